@@ -38,14 +38,14 @@ void valueFromJson(Value value, const Json& json, const FieldInfo& info, std::ve
 
 /// A described struct (or any type a member may have) as JSON. Keys are sorted.
 template <class T> Json toJson(const T& value) {
-    return detail::valueToJson(valueOf(value), FieldInfo{.key = "", .unit = "", .doc = ""});
+    return detail::valueToJson(valueOf(value), FieldInfo{"", ""});
 }
 
 /// Reads a value from a document. A missing key leaves the member unchanged. Unknown keys, wrong types, unknown names
 /// and numbers out of range leave it unchanged too, and are pushed to `issues` with their path.
 template <class T>
 void fromJson(T& value, const Json& json, std::vector<JsonIssue>& issues, const std::string& path = {}) {
-    detail::valueFromJson(valueOf(value), json, FieldInfo{.key = "", .unit = "", .doc = ""}, issues, path);
+    detail::valueFromJson(valueOf(value), json, FieldInfo{"", ""}, issues, path);
 }
 
 /// Parses JSON text; throws Error with line and column when it is broken or nested more than 100 deep. `file` only

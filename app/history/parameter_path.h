@@ -22,7 +22,7 @@ bool visitPath(Value value, const FieldInfo& info, std::string_view pointer, con
 /// Calls visit(member, FieldInfo) for the member that a JSON pointer names; false if there is none. Lists and maps are
 /// entered by index and key, variants directly.
 template <class T> bool visitParameter(T& value, std::string_view pointer, const VisitMember& visit) {
-    return detail::visitPath(valueOf(value), FieldInfo{.key = "", .unit = "", .doc = ""}, pointer, visit);
+    return detail::visitPath(valueOf(value), FieldInfo{"", ""}, pointer, visit);
 }
 
 struct Session;

@@ -1,7 +1,6 @@
 #include "app/pages/plot_marks.h"
 
 #include "app/drawing/line_pieces.h"
-#include "app/pages/plot_page.h"
 #include "app/ui/ticks.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/drawing/drawing.h"
+#include "app/drawing/typeface.h"
 #include "app/values/page_form.h"
 #include "app/values/plot.h"
 
@@ -9,6 +10,13 @@
 
 /// One plot as marks on a page.
 namespace tessera::app {
+
+inline constexpr double kFigureText = 9; ///< size of text on a page of natural size, points
+
+/// Width of a text in points, in the font of pages.
+inline double pageTextWidth(const std::string& text, double size = kFigureText) {
+    return textWidth(text) * size;
+}
 
 /// Where the title of a vertical axis stands: beside its numbers, upwards; in a line above the plot; across, before the
 /// numbers.

@@ -277,13 +277,6 @@ SeriesLists placeLists(const std::vector<Plot>& plots, const PlotGrid& grid, con
 
 } // namespace
 
-double pageTextWidth(const std::string& text, double size) {
-    double width = 0; // in em: Helvetica's digits are wider than its points and minus signs
-    for (const char c : text)
-        width += c == '.' ? 0.28 : c == '-' ? 0.34 : (static_cast<unsigned char>(c) & 0xc0) == 0x80 ? 0 : 0.56;
-    return width * size;
-}
-
 glm::dvec2 plotArea(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared) {
     return PlotLayout(plots, form, form.size, shared).best(columns, 0).plot;
 }

@@ -7,12 +7,8 @@
 /// Plots on a page.
 namespace tessera::app {
 
-/// What is between the axes of a plot of natural size, and the height of its texts, in points.
+/// What is between the axes of a plot of natural size, in points.
 inline constexpr glm::dvec2 kFigurePlot{226, 176};
-inline constexpr double kFigureText = 9;
-
-/// Approximate width of a text in points, in the font of pages, at a size of text.
-double pageTextWidth(const std::string& text, double size = kFigureText);
 
 /// Plots in rows of `columns`; 0: as many as suit the page. They fill a form that has a size; there, and where
 /// `shared`, plots below or beside each other that have an axis in common have its numbers once. Lists of series stand

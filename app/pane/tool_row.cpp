@@ -72,21 +72,27 @@ bool ToolRow::nextText(float width, float gap) {
     return menu_ == Menu::Open;
 }
 
+void exportTable(const ViewContext& context, const ViewExport& made) {
+    if (!made.table || !context.exportText) return;
+    context.exportText(made.name + ".csv",
+                       [table = made.table](const Progress& progress) { return csvOf(table(progress)); });
+}
+
 void exportMenu(ViewContext& context, ToolRow& tools, ViewExport asked, bool atOneTime, const std::string& numbers) {
     std::string& name = asked.name; // as a file
     const std::string title = name;
     std::replace(name.begin(), name.end(), '/', '_');
-    if (asked.table && !asked.csv)
-        asked.csv = [table = asked.table](const Progress& progress) { return csvOf(table(progress)); };
     const auto described = [&]() -> ViewExport { // tables and pictures state the origin of their numbers
         if (!context.numbers) return asked;
         const volume::DatasetInfo& info = context.numbers->info();
         std::string origin = numbers.empty() ? originText(context.origin, info) : numbers;
         if (atOneTime && info.times.size() > 1) origin += ", at " + timeText(info, context.session.time);
         ViewExport made = asked;
-        if (asked.csv)
-            made.csv = [csv = asked.csv, origin](const Progress& progress) {
-                return "# numbers: " + origin + "\n" + csv(progress);
+        if (asked.table)
+            made.table = [table = asked.table, origin](const Progress& progress) {
+                Table own = table(progress);
+                own.notes.insert(own.notes.begin(), "numbers: " + origin);
+                return own;
             };
         if (asked.figure)
             made.figure = [figure = asked.figure, origin](const PageForm& form, const Progress& progress) {
@@ -109,12 +115,12 @@ void exportMenu(ViewContext& context, ToolRow& tools, ViewExport asked, bool atO
         if (made.figure && context.exportFigure && ImGui::MenuItem(item))
             context.exportFigure(name + "." + suffix,
                                  [figure = made.figure](const Progress& progress) { return figure({}, progress); });
-    if (made.csv && ImGui::MenuItem("Copy table (CSV)"))
+    if (made.table && ImGui::MenuItem("Copy table (CSV)"))
         context.jobs.start("copy " + title, "Copying " + title,
-                           [csv = made.csv](const Progress& progress) -> Jobs::Finish {
-                               return [text = csv(progress)] { ImGui::SetClipboardText(text.c_str()); };
+                           [table = made.table](const Progress& progress) -> Jobs::Finish {
+                               return [text = csvOf(table(progress))] { ImGui::SetClipboardText(text.c_str()); };
                            });
-    if (made.csv && ImGui::MenuItem("Table (CSV)...")) context.exportText(name + ".csv", made.csv);
+    if (made.table && ImGui::MenuItem("Table (CSV)...")) exportTable(context, made);
     ImGui::EndPopup();
 }
 

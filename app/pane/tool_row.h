@@ -74,6 +74,9 @@ private:
     enum class Menu { None, Closed, Open } menu_ = Menu::None;
 };
 
+/// Asks where to save the table of an export as CSV, if it has one.
+void exportTable(const ViewContext& context, const ViewExport& made);
+
 /// A tool whose menu exports what a view shows: its picture, vector graphics, a table. Offers them also where there is
 /// no menu. `atOneTime`: it shows the time of the session alone, which tables then state. `numbers`: where they come
 /// from, if not all from the samples.

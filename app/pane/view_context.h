@@ -37,8 +37,7 @@ struct ViewCache {
 struct ViewExport {
     std::string name; ///< of a file, without ending
     std::function<VectorPage(const PageForm&, const Progress&)> figure = {};
-    std::function<Table(const Progress&)> table = {};
-    std::function<std::string(const Progress&)> csv = {}; ///< of a table that is not yet a value
+    std::function<Table(const Progress&)> table = {}; ///< its first note says where its numbers come from
 };
 
 /// What a view says in one frame.

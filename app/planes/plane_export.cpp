@@ -1,5 +1,6 @@
 #include "app/planes/plane_export.h"
 
+#include "app/pages/plot_marks.h"
 #include "app/pages/plot_page.h"
 #include "app/pane/legend.h"
 #include "app/planes/contour_labels.h"

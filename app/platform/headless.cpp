@@ -186,7 +186,7 @@ std::string PictureMaker::table(const SessionDocument& document, const Sources& 
     std::string text;
     renderAndInspect(document, sources, impl_->renderer, request, [&](const Workbench& workbench) {
         const ViewExport* offered = workbench.exported(request.pane);
-        if (offered && offered->csv) text = offered->csv(progress);
+        if (offered && offered->table) text = csvOf(offered->table(progress));
     });
     if (text.empty()) throw Error("has no table of what it shows", "--view", request.pane);
     return text;

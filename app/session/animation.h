@@ -23,12 +23,12 @@ struct Keyframe {
     bool operator==(const Keyframe&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.at, FieldInfo{.key = "at",
-                                 .unit = "s",
                                  .doc = "Time of the animation at which the setting has this value",
+                                 .unit = "s",
                                  .range = Range{0, 36000}});
-        visit(self.value, FieldInfo{.key = "value", .unit = "", .doc = "The value, one number per component"});
+        visit(self.value, FieldInfo{"value", "The value, one number per component"});
         visit(self.easing,
-              FieldInfo{.key = "easing", .unit = "", .doc = "Interpolation up to the next key", .names = kEasingNames});
+              FieldInfo{.key = "easing", .doc = "Interpolation up to the next key", .names = kEasingNames});
     }
 };
 
@@ -38,9 +38,8 @@ struct Track {
     std::vector<Keyframe> keys;
     bool operator==(const Track&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.path, FieldInfo{.key = "path", .unit = "", .doc = "Path of the setting in the session"});
-        visit(self.keys,
-              FieldInfo{.key = "keys", .unit = "", .doc = "Values of the setting at times of the animation"});
+        visit(self.path, FieldInfo{"path", "Path of the setting in the session"});
+        visit(self.keys, FieldInfo{"keys", "Values of the setting at times of the animation"});
     }
 };
 
@@ -54,28 +53,27 @@ struct Animation {
     std::vector<Track> tracks; ///< without any, the times of the data play
     bool operator==(const Animation&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.playing, FieldInfo{.key = "playing", .unit = "", .doc = "The animation is playing"});
+        visit(self.playing, FieldInfo{"playing", "The animation is playing"});
         visit(self.speed, FieldInfo{.key = "speed",
-                                    .unit = "steps/s",
                                     .doc = "Stored times shown per second, without keyframes",
+                                    .unit = "steps/s",
                                     .range = Range{0.1, 60},
                                     .logScale = true});
-        visit(self.loop,
-              FieldInfo{.key = "loop", .unit = "", .doc = "What playing does at the last time", .names = kLoopNames});
+        visit(self.loop, FieldInfo{.key = "loop", .doc = "What playing does at the last time", .names = kLoopNames});
         visit(self.position, FieldInfo{.key = "position",
-                                       .unit = "s",
                                        .doc = "Time of the animation that is shown",
+                                       .unit = "s",
                                        .range = Range{0, 36000}});
         visit(self.duration, FieldInfo{.key = "duration",
-                                       .unit = "s",
                                        .doc = "Length of the keyframe animation",
+                                       .unit = "s",
                                        .range = Range{0.1, 36000},
                                        .logScale = true});
         visit(self.framesPerSecond, FieldInfo{.key = "framesPerSecond",
-                                              .unit = "1/s",
                                               .doc = "Frames per second of a recorded animation",
+                                              .unit = "1/s",
                                               .range = Range{1, 120}});
-        visit(self.tracks, FieldInfo{.key = "tracks", .unit = "", .doc = "Keyframes by setting", .hidden = true});
+        visit(self.tracks, FieldInfo{.key = "tracks", .doc = "Keyframes by setting", .hidden = true});
     }
 };
 

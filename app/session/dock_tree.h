@@ -24,18 +24,15 @@ struct DockNode {
 
     bool operator==(const DockNode&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.id, FieldInfo{.key = "id", .unit = "", .doc = "Number of the node, unique in the tree"});
+        visit(self.id, FieldInfo{"id", "Number of the node, unique in the tree"});
         visit(self.kind, FieldInfo{.key = "kind",
-                                   .unit = "",
                                    .doc = "A stack of tabs, or a split into a row or column",
                                    .names = kDockKindNames});
-        visit(self.ratio, FieldInfo{.key = "ratio",
-                                    .unit = "",
-                                    .doc = "Share of the size that the first child takes",
-                                    .range = Range{0, 1}});
-        visit(self.children, FieldInfo{.key = "children", .unit = "", .doc = "Children of a split"});
-        visit(self.tabs, FieldInfo{.key = "tabs", .unit = "", .doc = "Panes in the stack"});
-        visit(self.active, FieldInfo{.key = "active", .unit = "", .doc = "Pane in front"});
+        visit(self.ratio,
+              FieldInfo{.key = "ratio", .doc = "Share of the size that the first child takes", .range = Range{0, 1}});
+        visit(self.children, FieldInfo{"children", "Children of a split"});
+        visit(self.tabs, FieldInfo{"tabs", "Panes in the stack"});
+        visit(self.active, FieldInfo{"active", "Pane in front"});
     }
 };
 
@@ -44,11 +41,11 @@ struct FloatingPane {
     float x = 0.3f, y = 0.3f, width = 0.4f, height = 0.4f; ///< fractions of the window
     bool operator==(const FloatingPane&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.pane, FieldInfo{.key = "pane", .unit = "", .doc = "Pane that floats"});
-        visit(self.x, FieldInfo{.key = "x", .unit = "", .doc = "Left edge"});
-        visit(self.y, FieldInfo{.key = "y", .unit = "", .doc = "Top edge"});
-        visit(self.width, FieldInfo{.key = "width", .unit = "", .doc = "Width"});
-        visit(self.height, FieldInfo{.key = "height", .unit = "", .doc = "Height"});
+        visit(self.pane, FieldInfo{"pane", "Pane that floats"});
+        visit(self.x, FieldInfo{"x", "Left edge"});
+        visit(self.y, FieldInfo{"y", "Top edge"});
+        visit(self.width, FieldInfo{"width", "Width"});
+        visit(self.height, FieldInfo{"height", "Height"});
     }
 };
 
@@ -59,12 +56,10 @@ struct DockTree {
     std::string volume;    ///< volume view clicked last, "" = none
     bool operator==(const DockTree&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.root, FieldInfo{.key = "root", .unit = "", .doc = "Root of the tree"});
-        visit(self.floating, FieldInfo{.key = "floating", .unit = "", .doc = "Panes that float"});
-        visit(self.maximised, FieldInfo{.key = "maximised", .unit = "", .doc = "Pane that fills the window"});
-        visit(self.volume, FieldInfo{.key = "volume",
-                                     .unit = "",
-                                     .doc = "Volume view clicked last, whose layers are listed and edited"});
+        visit(self.root, FieldInfo{"root", "Root of the tree"});
+        visit(self.floating, FieldInfo{"floating", "Panes that float"});
+        visit(self.maximised, FieldInfo{"maximised", "Pane that fills the window"});
+        visit(self.volume, FieldInfo{"volume", "Volume view clicked last, whose layers are listed and edited"});
     }
 };
 

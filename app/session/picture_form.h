@@ -19,17 +19,14 @@ struct Decoration {
     /// One of kPresetNames; nullopt of others.
     static std::optional<Decoration> preset(std::string_view name);
     static void describe(auto& self, auto&& visit) {
-        visit(self.legend, FieldInfo{.key = "legend", .unit = "", .doc = "Colour legends"});
-        visit(self.axes, FieldInfo{.key = "axes", .unit = "", .doc = "Axes with ticks and units"});
-        visit(self.box, FieldInfo{.key = "box", .unit = "", .doc = "The box around the data, the frame of a slice"});
-        visit(self.gizmo, FieldInfo{.key = "gizmo", .unit = "", .doc = "The axis triad"});
-        visit(self.cursor, FieldInfo{.key = "cursor", .unit = "", .doc = "The linked cross-hair and its values"});
-        visit(self.scaleBar, FieldInfo{.key = "scaleBar", .unit = "", .doc = "The scale bar"});
-        visit(self.title, FieldInfo{.key = "title",
-                                    .unit = "",
-                                    .doc = "Time or operating point, stretch, place of a slice, name of a variant"});
-        visit(self.outlines,
-              FieldInfo{.key = "outlines", .unit = "", .doc = "Outlines of lenses and brushes, and profile lines"});
+        visit(self.legend, FieldInfo{"legend", "Colour legends"});
+        visit(self.axes, FieldInfo{"axes", "Axes with ticks and units"});
+        visit(self.box, FieldInfo{"box", "The box around the data, the frame of a slice"});
+        visit(self.gizmo, FieldInfo{"gizmo", "The axis triad"});
+        visit(self.cursor, FieldInfo{"cursor", "The linked cross-hair and its values"});
+        visit(self.scaleBar, FieldInfo{"scaleBar", "The scale bar"});
+        visit(self.title, FieldInfo{"title", "Time or operating point, stretch, place of a slice, name of a variant"});
+        visit(self.outlines, FieldInfo{"outlines", "Outlines of lenses and brushes, and profile lines"});
     }
 };
 
@@ -58,47 +55,42 @@ struct PictureSize {
     static std::optional<PictureSize> preset(std::string_view name);
     static void describe(auto& self, auto&& visit) {
         visit(self.measure, FieldInfo{.key = "measure",
-                                      .unit = "",
                                       .doc = "Size in pixels, for screens, or in millimetres, for print",
                                       .names = kPictureMeasureNames});
         const bool paper = self.onPaper();
         visit(self.width, FieldInfo{.key = "width",
-                                    .unit = "pixel",
                                     .doc = "Width of the picture",
+                                    .unit = "pixel",
                                     .range = Range{16, 16384},
                                     .logScale = true,
                                     .applies = !paper});
         visit(self.height, FieldInfo{.key = "height",
-                                     .unit = "pixel",
                                      .doc = "Height of the picture",
+                                     .unit = "pixel",
                                      .range = Range{16, 16384},
                                      .logScale = true,
                                      .applies = !paper});
-        visit(self.scale, FieldInfo{.key = "scale",
-                                    .unit = "",
-                                    .doc = "Size of text and lines",
-                                    .range = Range{0.25, 8},
-                                    .applies = !paper});
+        visit(self.scale,
+              FieldInfo{.key = "scale", .doc = "Size of text and lines", .range = Range{0.25, 8}, .applies = !paper});
         visit(self.widthMm, FieldInfo{.key = "widthMm",
-                                      .unit = "mm",
                                       .doc = "Width on paper",
+                                      .unit = "mm",
                                       .range = Range{5, 2000},
                                       .logScale = true,
                                       .applies = paper});
         visit(self.heightMm, FieldInfo{.key = "heightMm",
-                                       .unit = "mm",
                                        .doc = "Height on paper; 0: three quarters of the width",
+                                       .unit = "mm",
                                        .range = Range{0, 2000},
                                        .applies = paper});
         visit(self.dpi, FieldInfo{.key = "dpi",
-                                  .unit = "",
                                   .doc = "Pixels per inch on paper; the PNG says so",
                                   .range = Range{36, 2400},
                                   .logScale = true,
                                   .applies = paper});
         visit(self.textPt, FieldInfo{.key = "textPt",
-                                     .unit = "pt",
                                      .doc = "Size of text on paper, in points of 1/72 inch",
+                                     .unit = "pt",
                                      .range = Range{3, 144},
                                      .logScale = true,
                                      .applies = paper});
@@ -119,17 +111,14 @@ struct PictureForm {
     bool operator==(const PictureForm&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.format, FieldInfo{.key = "format",
-                                     .unit = "",
                                      .doc = "PNG: a raster picture; SVG and PDF: texts and lines as vectors, views as "
                                             "pictures of the size above. Each contains the session",
                                      .names = kPictureFormatNames});
-        visit(self.size, FieldInfo{.key = "size", .unit = "", .doc = "Size of the picture and of its text"});
+        visit(self.size, FieldInfo{"size", "Size of the picture and of its text"});
         visit(self.ground, FieldInfo{.key = "ground",
-                                     .unit = "",
                                      .doc = "Background: as on screen, or white with dark text",
                                      .names = kPictureGroundNames});
-        visit(self.decoration,
-              FieldInfo{.key = "decoration", .unit = "", .doc = "What is drawn over and beside the data"});
+        visit(self.decoration, FieldInfo{"decoration", "What is drawn over and beside the data"});
     }
 };
 

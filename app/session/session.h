@@ -31,11 +31,10 @@ struct DataFile {
     std::string hash;         ///< xxh64 of the first and last MiB, hex, "" = unknown
     bool operator==(const DataFile&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.path,
-              FieldInfo{.key = "path", .unit = "", .doc = "File, relative to the session", .refersTo = "path"});
-        visit(self.absolutePath, FieldInfo{.key = "absolutePath", .unit = "", .doc = "Absolute path when saved"});
-        visit(self.bytes, FieldInfo{.key = "bytes", .unit = "byte", .doc = "Size when saved"});
-        visit(self.hash, FieldInfo{.key = "hash", .unit = "", .doc = "xxh64 of the first and last MiB when saved"});
+        visit(self.path, FieldInfo{.key = "path", .doc = "File, relative to the session", .refersTo = "path"});
+        visit(self.absolutePath, FieldInfo{"absolutePath", "Absolute path when saved"});
+        visit(self.bytes, FieldInfo{.key = "bytes", .doc = "Size when saved", .unit = "byte"});
+        visit(self.hash, FieldInfo{"hash", "xxh64 of the first and last MiB when saved"});
     }
 };
 
@@ -56,12 +55,11 @@ struct OtherData {
     std::optional<DataFile> table = {}; ///< import.overTime when saved
     bool operator==(const OtherData&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Files of the other data set"});
-        visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model, if there is no file"});
-        visit(self.settings, FieldInfo{.key = "settings", .unit = "", .doc = "Settings of the model"});
-        visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What the user stated about the files"});
-        visit(self.table,
-              FieldInfo{.key = "table", .unit = "", .doc = "File of quantities over time, as it was when saved"});
+        visit(self.files, FieldInfo{"files", "Files of the other data set"});
+        visit(self.model, FieldInfo{"model", "Built-in model, if there is no file"});
+        visit(self.settings, FieldInfo{"settings", "Settings of the model"});
+        visit(self.import, FieldInfo{"import", "What the user stated about the files"});
+        visit(self.table, FieldInfo{"table", "File of quantities over time, as it was when saved"});
     }
 };
 
@@ -83,49 +81,37 @@ struct DataRef {
     std::optional<DataFile> table = {};            ///< import.overTime when saved: found again as the files are
     bool operator==(const DataRef&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.files, FieldInfo{.key = "files", .unit = "", .doc = "Data files, shown together"});
-        visit(self.model, FieldInfo{.key = "model", .unit = "", .doc = "Built-in model, if there is no file"});
-        visit(self.settings, FieldInfo{.key = "settings", .unit = "", .doc = "Settings of the model"});
+        visit(self.files, FieldInfo{"files", "Data files, shown together"});
+        visit(self.model, FieldInfo{"model", "Built-in model, if there is no file"});
+        visit(self.settings, FieldInfo{"settings", "Settings of the model"});
         visit(self.lattice,
               FieldInfo{.key = "lattice",
-                        .unit = "",
                         .doc = "Lattice that pictures are drawn from: the grid of the data as it is, or body-centred "
                                "with 70.7 % of the samples, corrected by what they leave of those of the grid; "
                                "numbers always come from the grid",
                         .names = kPictureLatticeNames});
         visit(self.grids,
               FieldInfo{.key = "grids",
-                        .unit = "",
                         .doc =
                             "Of an archive on D4*, the lattice in space and time: both of its grids at every time, of "
                             "which one is computed from the times before and after, or one grid alone at its own "
                             "times, with the samples as stored",
                         .names = kShownGridsNames});
-        visit(self.derived,
-              FieldInfo{.key = "derived", .unit = "", .doc = "Parameters computed from the others", .hidden = true});
-        visit(self.import, FieldInfo{.key = "import", .unit = "", .doc = "What the user stated about the files"});
-        visit(
-            self.packed,
-            FieldInfo{
-                .key = "packed",
-                .unit = "",
-                .doc =
-                    "Show data files as an archive packed with these options, or with this preset, would store them"});
-        visit(self.originals,
-              FieldInfo{.key = "originals", .unit = "", .doc = "With `packed`: also show the parameters as computed"});
-        visit(self.axis, FieldInfo{.key = "axis",
-                                   .unit = "",
-                                   .doc = "Quantity over time to use as the time axis, if it rises or falls "
-                                          "throughout; otherwise it is listed first"});
-        visit(self.timeAxis, FieldInfo{.key = "timeAxis", .unit = "", .doc = "Show time along an axis of space"});
-        visit(self.other,
+        visit(self.derived, FieldInfo{.key = "derived", .doc = "Parameters computed from the others", .hidden = true});
+        visit(self.import, FieldInfo{"import", "What the user stated about the files"});
+        visit(self.packed,
               FieldInfo{
-                  .key = "other",
-                  .unit = "",
-                  .doc = "Another data set; its parameters are added as \"T (other)\", interpolated onto this grid"});
-        visit(self.remote, FieldInfo{.key = "remote", .unit = "", .doc = "How archives on other machines are read"});
-        visit(self.table,
-              FieldInfo{.key = "table", .unit = "", .doc = "File of quantities over time, as it was when saved"});
+                  "packed",
+                  "Show data files as an archive packed with these options, or with this preset, would store them"});
+        visit(self.originals, FieldInfo{"originals", "With `packed`: also show the parameters as computed"});
+        visit(self.axis, FieldInfo{"axis", "Quantity over time to use as the time axis, if it rises or falls "
+                                           "throughout; otherwise it is listed first"});
+        visit(self.timeAxis, FieldInfo{"timeAxis", "Show time along an axis of space"});
+        visit(self.other,
+              FieldInfo{"other",
+                        "Another data set; its parameters are added as \"T (other)\", interpolated onto this grid"});
+        visit(self.remote, FieldInfo{"remote", "How archives on other machines are read"});
+        visit(self.table, FieldInfo{"table", "File of quantities over time, as it was when saved"});
     }
 };
 
@@ -149,12 +135,10 @@ struct Appearance {
     FigureLegends legends = FigureLegends::Automatic;
     bool operator==(const Appearance&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.theme, FieldInfo{.key = "theme", .unit = "", .doc = "Colours of the window", .names = kThemeNames});
-        visit(self.scale,
-              FieldInfo{.key = "scale", .unit = "", .doc = "Size of text and controls", .range = Range{0.5, 3}});
+        visit(self.theme, FieldInfo{.key = "theme", .doc = "Colours of the window", .names = kThemeNames});
+        visit(self.scale, FieldInfo{.key = "scale", .doc = "Size of text and controls", .range = Range{0.5, 3}});
         visit(self.legends,
               FieldInfo{.key = "legends",
-                        .unit = "",
                         .doc = "Colour legends in a corner of a figure: whole, with ticks; one line each, which covers "
                                "less; or automatic: whole unless they would cover the object in a small figure. Those "
                                "that do not all fit whole are lines",
@@ -196,39 +180,33 @@ struct Session {
     ~Session();
     bool operator==(const Session&) const;
     static void describe(auto& self, auto&& visit) {
-        visit(self.schema, FieldInfo{.key = "schema", .unit = "", .doc = "Version of this format", .hidden = true});
-        visit(self.title, FieldInfo{.key = "title", .unit = "", .doc = "What this session shows"});
-        visit(self.data, FieldInfo{.key = "data", .unit = "", .doc = "The data set"});
-        visit(self.time, FieldInfo{.key = "time", .unit = kUnitOfTimes, .doc = "Time shown in every view"});
+        visit(self.schema, FieldInfo{.key = "schema", .doc = "Version of this format", .hidden = true});
+        visit(self.title, FieldInfo{"title", "What this session shows"});
+        visit(self.data, FieldInfo{"data", "The data set"});
+        visit(self.time, FieldInfo{.key = "time", .doc = "Time shown in every view", .unit = kUnitOfTimes});
         visit(self.cursor,
-              FieldInfo{.key = "cursor", .unit = kUnitOfLengths, .doc = "Position of the linked cross-hair"});
+              FieldInfo{.key = "cursor", .doc = "Position of the linked cross-hair", .unit = kUnitOfLengths});
         visit(self.stretch, FieldInfo{.key = "stretch",
-                                      .unit = "",
                                       .doc = "Factor by which each axis is stretched; 1 = true proportions",
                                       .range = Range{0.01, 1e6},
                                       .logScale = true});
-        visit(self.camera, FieldInfo{.key = "camera", .unit = "", .doc = "Camera of the 3D views"});
-        visit(self.selection, FieldInfo{.key = "selection", .unit = "", .doc = "Brushes shared by all views"});
+        visit(self.camera, FieldInfo{"camera", "Camera of the 3D views"});
+        visit(self.selection, FieldInfo{"selection", "Brushes shared by all views"});
         visit(self.layoutBrushes, FieldInfo{.key = "layoutBrushes",
-                                            .unit = "",
                                             .doc = "Brushes as the layout brought them: another layout takes them away",
                                             .hidden = true});
-        visit(self.transfer, FieldInfo{.key = "transfer", .unit = "", .doc = "Transfer functions by parameter"});
-        visit(self.layers, FieldInfo{.key = "layers", .unit = "", .doc = "Layers drawn in the 3D views"});
-        visit(self.render, FieldInfo{.key = "render", .unit = "", .doc = "Settings of the ray caster"});
-        visit(self.lighting, FieldInfo{.key = "lighting", .unit = "", .doc = "Lights and surfaces"});
-        visit(self.clips, FieldInfo{.key = "clips", .unit = "", .doc = "Planes and bodies that cut the data open"});
-        visit(self.lenses,
-              FieldInfo{.key = "lenses", .unit = "", .doc = "Lenses; a later one lies over an earlier one"});
-        visit(self.tone,
-              FieldInfo{.key = "tone", .unit = "", .doc = "Mapping of bright light to the range of the screen"});
-        visit(self.paper, FieldInfo{.key = "paper",
-                                    .unit = "",
-                                    .doc = "Paper behind the picture; none: the background of the theme"});
-        visit(self.animation, FieldInfo{.key = "animation", .unit = "", .doc = "Playing through time or keyframes"});
-        visit(self.appearance, FieldInfo{.key = "appearance", .unit = "", .doc = "Appearance of the window"});
-        visit(self.views, FieldInfo{.key = "views", .unit = "", .doc = "Views by the name of their pane"});
-        visit(self.dock, FieldInfo{.key = "dock", .unit = "", .doc = "Arrangement of the panes", .hidden = true});
+        visit(self.transfer, FieldInfo{"transfer", "Transfer functions by parameter"});
+        visit(self.layers, FieldInfo{"layers", "Layers drawn in the 3D views"});
+        visit(self.render, FieldInfo{"render", "Settings of the ray caster"});
+        visit(self.lighting, FieldInfo{"lighting", "Lights and surfaces"});
+        visit(self.clips, FieldInfo{"clips", "Planes and bodies that cut the data open"});
+        visit(self.lenses, FieldInfo{"lenses", "Lenses; a later one lies over an earlier one"});
+        visit(self.tone, FieldInfo{"tone", "Mapping of bright light to the range of the screen"});
+        visit(self.paper, FieldInfo{"paper", "Paper behind the picture; none: the background of the theme"});
+        visit(self.animation, FieldInfo{"animation", "Playing through time or keyframes"});
+        visit(self.appearance, FieldInfo{"appearance", "Appearance of the window"});
+        visit(self.views, FieldInfo{"views", "Views by the name of their pane"});
+        visit(self.dock, FieldInfo{.key = "dock", .doc = "Arrangement of the panes", .hidden = true});
     }
 };
 

@@ -182,7 +182,7 @@ bool choosePreset(const WidgetContext& context, Value value) {
         std::find_if(names.begin(), names.end(), [&](auto name) { return value.type->isPreset(value.at, name); });
     int index = static_cast<int>(found - names.begin());
     if (found == names.end()) names.push_back(kOwn);
-    const FieldInfo field{.key = "preset", .unit = "", .doc = "Presets to start from", .names = names};
+    const FieldInfo field{.key = "preset", .doc = "Presets to start from", .names = names};
     if (!drawChoice(context, field, index) || names[static_cast<std::size_t>(index)] == kOwn) return false;
     value.type->setPreset(value.at, names[static_cast<std::size_t>(index)]);
     return true;

@@ -144,7 +144,7 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     if (tablePane_ == pane)
         context.offerExport = [&](const ViewExport& made) {
             tablePane_.clear();
-            if (made.csv && frame.exportText) frame.exportText(made.name + ".csv", made.csv);
+            app::exportTable(frame, made);
         };
     else if (frame.headless)
         context.offerExport = [&](ViewExport made) { exports_[pane] = std::move(made); };

@@ -68,106 +68,92 @@ struct PackOptions {
     static void describe(auto& self, auto&& visit) {
         visit(self.lattice,
               FieldInfo{.key = "lattice",
-                        .unit = "",
                         .doc = "Lattice of the stored samples: cc (the grid of the source), or resampled to bcc "
                                "(70.7 % of the samples) or d4 (50 %, in space and time, for eight evenly "
                                "spaced times or more)",
                         .names = kStoredLatticeNames});
-        visit(self.resample,
-              FieldInfo{.key = "resample", .unit = "", .doc = "How samples of another lattice are computed"});
-        visit(self.lossless,
-              FieldInfo{.key = "lossless", .unit = "", .doc = "Store every sample of the lattice bit for bit"});
+        visit(self.resample, FieldInfo{"resample", "How samples of another lattice are computed"});
+        visit(self.lossless, FieldInfo{"lossless", "Store every sample of the lattice bit for bit"});
         visit(self.maxError, FieldInfo{.key = "maxError",
-                                       .unit = "of range",
                                        .doc = "Largest error of a sample, relative to the range of its parameter; a "
                                               "value above 0 replaces lossless",
+                                       .unit = "of range",
                                        .range = Range{0, 1}});
         visit(self.absError, FieldInfo{.key = "absError",
-                                       .unit = "of the parameter",
                                        .doc = "Largest error of a sample, in the unit of its parameter; 0 = no such "
                                               "bound. The strictest of several bounds applies",
+                                       .unit = "of the parameter",
                                        .range = Range{0, 1e30}});
         visit(self.psnr, FieldInfo{.key = "psnr",
-                                   .unit = "dB",
                                    .doc = "Smallest peak signal-to-noise ratio at any time (range of the parameter / "
                                           "RMS error); 0 = no such bound",
+                                   .unit = "dB",
                                    .range = Range{0, 200}});
         visit(self.ofComponents,
-              FieldInfo{.key = "ofComponents",
-                        .unit = "",
-                        .doc = "Bounds relative to the range of a vector are relative to that of each component by "
-                               "itself, instead of the widest one"});
+              FieldInfo{"ofComponents",
+                        "Bounds relative to the range of a vector are relative to that of each component by "
+                        "itself, instead of the widest one"});
         visit(self.regionNumbers,
-              FieldInfo{.key = "regionNumbers",
-                        .unit = "",
-                        .doc = "With an error bound, keep means, extremes and balances of everything and of each "
-                               "region as computed from the source: about a kilobyte for each time"});
+              FieldInfo{"regionNumbers",
+                        "With an error bound, keep means, extremes and balances of everything and of each "
+                        "region as computed from the source: about a kilobyte for each time"});
         visit(self.sizeMb, FieldInfo{.key = "targetSize",
-                                     .unit = "MB",
                                      .doc = "Largest size of the archive; the smallest error relative to the ranges "
                                             "that fits is searched for. 0 = no limit",
+                                     .unit = "MB",
                                      .range = Range{0, 1e9}});
-        visit(self.threshold, FieldInfo{.key = "threshold",
-                                        .unit = "",
-                                        .doc = "Wavelet thresholding in addition to rounding. Bounds still hold; "
-                                               "without one the error is measured and stored"});
+        visit(self.threshold, FieldInfo{"threshold", "Wavelet thresholding in addition to rounding. Bounds still hold; "
+                                                     "without one the error is measured and stored"});
         visit(self.discard, FieldInfo{.key = "discard",
-                                      .unit = "importance",
                                       .doc = "Omit bricks that are less important than this in every parameter at "
                                              "every time: their samples become absent; 0 = none",
+                                      .unit = "importance",
                                       .range = Range{0, 1}});
         visit(self.wavelet, FieldInfo{.key = "wavelet",
-                                      .unit = "",
                                       .doc = "Vanishing moments N,N~ of the integer wavelet; auto: chosen by trial",
                                       .names = kWaveletChoiceNames});
         visit(self.bccTransform, FieldInfo{.key = "bccTransform",
-                                           .unit = "",
                                            .doc = "For BCC: transform each sublattice by itself (separable), or "
                                                   "predict one from the other (bodyCentred); auto: chosen by trial",
                                            .names = kBccTransformNames});
         visit(self.brickSize,
               FieldInfo{
                   .key = "brickSize",
-                  .unit = "texel",
                   .doc = "Edge of a brick, a power of two; 0 = automatic: 64; 128 for numbers with an error bound in "
                          "volumes of at most 128^3 samples, and for a small integer volume",
+                  .unit = "texel",
                   .range = Range{0, 128}});
         visit(self.levels, FieldInfo{.key = "levels",
-                                     .unit = "",
                                      .doc = "Number of levels of detail; 0 = until a brick is 4 samples wide",
                                      .range = Range{0, 8}});
         visit(self.effort,
               FieldInfo{.key = "effort",
-                        .unit = "",
                         .doc = "Time spent on a shorter archive. Up to 3 no filter is tried, and zstd works at level 3 "
                                "at most. From 7 on samples are also predicted by weights fitted to them, by which "
                                "scans gain most; such archives take ten times as long to pack, with 9 twenty, and two "
                                "to three times as long to read. With 9 data of integers get bricks of 128, too",
                         .range = Range{1, 9}});
         visit(self.zstdLevel, FieldInfo{.key = "zstdLevel",
-                                        .unit = "",
                                         .doc = "Effort of zstd, which codes masks and repetitive bricks",
                                         .range = Range{1, 19}});
         visit(self.mostPredicted,
               FieldInfo{.key = "mostPredicted",
-                        .unit = "times",
                         .doc = "Numbers with an error bound: longest run of times that are stored as differences from "
                                "the time before, where that is shorter; to read one, those before it in the run are "
                                "decoded, too. 0 = each time by itself",
+                        .unit = "times",
                         .range = Range{0, 15}});
         visit(
             self.memoryMb,
             FieldInfo{
                 .key = "memory",
-                .unit = "MB",
                 .doc =
                     "Limit of memory for packing; 0 = a quarter of the machine's, shared by the processes that mpirun "
                     "or srun start on it. With little memory, data are not "
                     "compared with the previous time, not read ahead, and read in slabs if one time does not fit",
+                .unit = "MB",
                 .range = Range{0, 1e9}});
-        visit(self.importance, FieldInfo{.key = "importance",
-                                         .unit = "",
-                                         .doc = "How the importance of a brick is computed from its samples"});
+        visit(self.importance, FieldInfo{"importance", "How the importance of a brick is computed from its samples"});
     }
 };
 

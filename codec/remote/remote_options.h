@@ -12,18 +12,17 @@ struct RemoteOptions {
     bool operator==(const RemoteOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.cache, FieldInfo{.key = "cache",
-                                    .unit = "MiB",
                                     .doc = "Disk space in the user's cache folder for what was read of archives on "
                                            "other machines; what was used least recently is removed first",
+                                    .unit = "MiB",
                                     .range = Range{16, 1 << 20},
                                     .logScale = true});
         visit(self.connections, FieldInfo{.key = "connections",
-                                          .unit = "",
                                           .doc = "Connections to the other machine at a time",
                                           .range = Range{1, 32}});
         visit(self.patience, FieldInfo{.key = "patience",
-                                       .unit = "s",
                                        .doc = "How long a request to another machine that failed is tried again",
+                                       .unit = "s",
                                        .range = Range{0, 600}});
     }
 };

@@ -29,20 +29,18 @@ struct ThresholdOptions {
     bool operator==(const ThresholdOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.kind, FieldInfo{.key = "kind",
-                                   .unit = "",
                                    .doc = "Which wavelet details are removed: hard (small ones become 0), soft (all "
                                           "others shrink as well), quantile (the smallest share of each brick)",
                                    .names = kThresholdChoiceNames});
         visit(self.value, FieldInfo{.key = "value",
-                                    .unit = "of range",
                                     .doc = "For hard and soft: threshold relative to the range of the parameter; for "
                                            "quantile: the share of the details",
+                                    .unit = "of range",
                                     .range = Range{0, 1}});
         visit(self.byImportance,
-              FieldInfo{.key = "byImportance",
-                        .unit = "",
-                        .doc = "Scale the threshold by importance: 0 for the most important brick, the full value for "
-                               "the least important one; off: the full value for every brick"});
+              FieldInfo{"byImportance",
+                        "Scale the threshold by importance: 0 for the most important brick, the full value for "
+                        "the least important one; off: the full value for every brick"});
     }
 };
 

@@ -208,7 +208,7 @@ protected:
                                                   : several ? glm::ivec2(520, 300)
                                                             : glm::ivec2(420, 640));
         const ViewExport* offered = workbench.exported("pane");
-        if (offered && offered->csv && !several && kind != "slices") return offered->csv({});
+        if (offered && offered->table && !several && kind != "slices") return csvOf(offered->table({}));
         return {image.rgba.begin(), image.rgba.end()};
     }
 };
@@ -218,7 +218,7 @@ TEST_P(Consumers, FollowWhatTheyDependOnAndNothingElse) {
     const std::string before = shown(start);
     const ViewExport* offered = workbench.exported("pane");
     EXPECT_EQ(offered && offered->figure, traitsOf(start.views.at("pane")).figure);
-    EXPECT_EQ(offered && offered->csv, traitsOf(start.views.at("pane")).csv);
+    EXPECT_EQ(offered && offered->table, traitsOf(start.views.at("pane")).csv);
     ASSERT_TRUE(before == shown(start)) << "shows the same of the same";
     std::string effects;
     for (int input = 0; input < kInputs; ++input) {

@@ -22,7 +22,7 @@
 namespace tessera::app {
 namespace {
 
-const FieldInfo kWhole{.key = "", .unit = "", .doc = ""};
+const FieldInfo kWhole{"", ""};
 
 /// One described struct; `name` as the compiler gives it.
 struct DescribedStruct {

@@ -53,7 +53,7 @@ protected:
     std::string table(const Session& session) {
         picture(session);
         const ViewExport* offered = workbench.exported("pane");
-        return offered && offered->csv ? offered->csv({}) : std::string();
+        return offered && offered->table ? csvOf(offered->table({})) : std::string();
     }
 
     vis::HeadlessContext gl;

@@ -1,3 +1,4 @@
+#include "app/pages/plot_marks.h"
 #include "app/pages/plot_page.h"
 #include "app/plots/plot_view.h"
 #include "app/ui/theme.h"

@@ -76,7 +76,7 @@ struct Randomise {
 
 template <class T> T randomValue(std::mt19937& random) {
     T value{};
-    Randomise{random}(valueOf(value), FieldInfo{.key = "", .unit = "", .doc = ""});
+    Randomise{random}(valueOf(value), FieldInfo{"", ""});
     return value;
 }
 

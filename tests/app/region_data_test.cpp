@@ -97,7 +97,7 @@ TEST(RegionData, SectionsHaveUnitsAndCurvesARegionEach) {
     unstated.timeUnit.clear();
     EXPECT_EQ(measureUnit(unstated, 0, "U", SectionMeasure::Flow).unit, "length3/time");
 
-    const auto csv = rowsOf(sectionCsv(info, curves));
+    const auto csv = rowsOf(csvOf(sectionTable(info, curves)));
     ASSERT_EQ(csv.size(), 1u + 3 * 2 * 9);
     EXPECT_EQ(csv[0][0], "z [m]");
     const std::vector<std::string>& third = csv[1 + 9 * 2 + 2]; // air, O2, third plane
@@ -129,7 +129,7 @@ TEST(RegionData, WithoutAVelocityThereIsNoFlux) {
     const SectionCurves curves = readSections(source, query);
     EXPECT_EQ(curves.velocity, "");
     EXPECT_THROW(sectionPanels(source->info(), curves, SectionMeasure::Flux), Error);
-    EXPECT_EQ(rowsOf(sectionCsv(source->info(), curves))[1][11], ""); // no number rather than 0
+    EXPECT_EQ(rowsOf(csvOf(sectionTable(source->info(), curves)))[1][11], ""); // no number rather than 0
     query.weight = volume::SectionWeight::MassFlow;
     EXPECT_THROW(readSections(source, query), Error);
     EXPECT_THROW(readBalance(source, {}, {}), Error);

@@ -90,12 +90,12 @@ TEST_F(UiTest, WhatDoesNotApplyIsNotDrawn) {
 struct GroupedSettings {
     bool seldom = false, often = false, rarely = false, never = false, seldomToo = false, unused = false;
     static void describe(auto& self, auto&& visit) {
-        visit(self.seldom, FieldInfo{.key = "seldom", .unit = "", .doc = "", .group = "Some"});
-        visit(self.often, FieldInfo{.key = "often", .unit = "", .doc = ""});
-        visit(self.rarely, FieldInfo{.key = "rarely", .unit = "", .doc = "", .group = "Others"});
-        visit(self.never, FieldInfo{.key = "never", .unit = "", .doc = "", .applies = false, .group = "None"});
-        visit(self.seldomToo, FieldInfo{.key = "seldomToo", .unit = "", .doc = "", .group = "Some"});
-        visit(self.unused, FieldInfo{.key = "unused", .unit = "", .doc = "", .hidden = true, .group = "None"});
+        visit(self.seldom, FieldInfo{.key = "seldom", .doc = "", .group = "Some"});
+        visit(self.often, FieldInfo{"often", ""});
+        visit(self.rarely, FieldInfo{.key = "rarely", .doc = "", .group = "Others"});
+        visit(self.never, FieldInfo{.key = "never", .doc = "", .applies = false, .group = "None"});
+        visit(self.seldomToo, FieldInfo{.key = "seldomToo", .doc = "", .group = "Some"});
+        visit(self.unused, FieldInfo{.key = "unused", .doc = "", .hidden = true, .group = "None"});
     }
 };
 
@@ -188,8 +188,8 @@ ImVec2 middleOfNumber(const FieldInfo& info, double& value) {
 
 // Dear ImGui reads 1e999 as infinity, whose differences are not numbers.
 TEST_F(UiTest, ATypedNumberIsFinite) {
-    const FieldInfo limited{.key = "gain", .unit = "", .doc = "", .range = Range{0, 1}};
-    const FieldInfo free{.key = "place", .unit = "m", .doc = ""};
+    const FieldInfo limited{.key = "gain", .doc = "", .range = Range{0, 1}};
+    const FieldInfo free{.key = "place", .doc = "", .unit = "m"};
     for (const FieldInfo& info : {limited, free}) {
         double value = 0.5;
         ImVec2 at;
@@ -248,8 +248,8 @@ TEST_F(UiTest, PlacesAndTimesHaveTheUnitsOfTheData) {
 }
 
 TEST_F(UiTest, ADoubleClickTypesANumber) {
-    const FieldInfo limited{.key = "gain", .unit = "", .doc = "", .range = Range{0, 1}};
-    const FieldInfo free{.key = "place", .unit = "m", .doc = ""};
+    const FieldInfo limited{.key = "gain", .doc = "", .range = Range{0, 1}};
+    const FieldInfo free{.key = "place", .doc = "", .unit = "m"};
     for (const FieldInfo& info : {limited, free})
         for (const int clicks : {1, 2}) {
             double value = 0.5;
@@ -275,7 +275,7 @@ TEST_F(UiTest, ADoubleClickTypesANumber) {
 }
 
 TEST_F(UiTest, EscAfterADoubleClickLeavesTheValueAsItWas) {
-    const FieldInfo info{.key = "gain", .unit = "", .doc = "", .range = Range{0, 1}};
+    const FieldInfo info{.key = "gain", .doc = "", .range = Range{0, 1}};
     double value = 0.125;
     ImVec2 at;
     const auto body = [&] { at = middleOfNumber(info, value); };

@@ -70,8 +70,8 @@ TEST_F(Widgets, ThePaletteSaysWhatACommandDoesAndWhatItNeeds) {
 TEST_F(Widgets, AListOfParametersIsReadAndChosenFrom) {
     const volume::DatasetInfo info = cellInfo();
     std::vector<std::string> values;
-    const FieldInfo channels{.key = "channels", .unit = "", .doc = "help", .refersTo = "channel"};
-    const FieldInfo others{.key = "others", .unit = "", .doc = "help"};
+    const FieldInfo channels{.key = "channels", .doc = "help", .refersTo = "channel"};
+    const FieldInfo others{"others", "help"};
     const FieldInfo* field = &channels;
     bool changed = false;
     const auto draw = [&] {

@@ -33,33 +33,26 @@ struct Camera {
 
     bool operator==(const Camera&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.projection, FieldInfo{.key = "projection",
-                                         .unit = "",
-                                         .doc = "Perspective or parallel projection",
-                                         .names = kProjectionNames});
+        visit(self.projection,
+              FieldInfo{.key = "projection", .doc = "Perspective or parallel projection", .names = kProjectionNames});
         visit(self.orientation, FieldInfo{.key = "orientation",
-                                          .unit = "",
                                           .doc = "Rotation from world to eye axes, as a quaternion (w, x, y, z)",
                                           .hidden = true});
-        visit(
-            self.target,
-            FieldInfo{.key = "target", .unit = "", .doc = "World point in the middle of the picture", .hidden = true});
+        visit(self.target,
+              FieldInfo{.key = "target", .doc = "World point in the middle of the picture", .hidden = true});
         visit(self.distance, FieldInfo{.key = "distance",
-                                       .unit = "",
                                        .doc = "Distance from the eye to the target, longest edge = 1",
                                        .range = Range{0.01, 100},
                                        .logScale = true});
         visit(self.fieldOfView,
-              FieldInfo{.key = "fieldOfView", .unit = "deg", .doc = "Vertical field of view", .range = Range{5, 120}});
+              FieldInfo{.key = "fieldOfView", .doc = "Vertical field of view", .unit = "deg", .range = Range{5, 120}});
         visit(self.aperture,
               FieldInfo{.key = "aperture",
-                        .unit = "",
                         .doc = "Depth of field: diameter of the lens, longest edge = 1; pictures at rest are blurred "
                                "before and behind the point in focus; 0 = everything is sharp",
                         .range = Range{0, 0.5}});
         visit(self.focus,
               FieldInfo{.key = "focus",
-                        .unit = "",
                         .doc = "World point in focus, centre of the data = 0: what is as deep in the picture is sharp",
                         .range = Range{-1, 1},
                         .applies = self.aperture > 0});

@@ -29,34 +29,28 @@ struct Clip {
 
     bool operator==(const Clip&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Apply this clip"});
-        visit(self.kind, FieldInfo{.key = "kind", .unit = "", .doc = "Shape that cuts", .names = kClipKindNames});
+        visit(self.enabled, FieldInfo{"enabled", "Apply this clip"});
+        visit(self.kind, FieldInfo{.key = "kind", .doc = "Shape that cuts", .names = kClipKindNames});
         visit(self.keep,
               FieldInfo{.key = "keep",
-                        .unit = "",
                         .doc = "Side that is kept; the inside of a plane is the side that its normal points away from",
                         .names = kClipKeepNames});
-        visit(self.center, FieldInfo{.key = "center",
-                                     .unit = "",
-                                     .doc = "Centre, 0 to 1 along each axis of the data",
-                                     .range = Range{-0.5, 1.5}});
+        visit(
+            self.center,
+            FieldInfo{.key = "center", .doc = "Centre, 0 to 1 along each axis of the data", .range = Range{-0.5, 1.5}});
         visit(self.axis, FieldInfo{.key = "axis",
-                                   .unit = "",
                                    .doc = "Normal of a plane, axis of a cylinder",
                                    .range = Range{-1, 1},
                                    .applies = self.kind == ClipKind::Plane || self.kind == ClipKind::Cylinder});
         visit(self.size, FieldInfo{.key = "size",
-                                   .unit = "",
                                    .doc = "Edge lengths of a box; longest edge of the data = 1",
                                    .range = Range{0, 2},
                                    .applies = self.kind == ClipKind::Box});
         visit(self.radius, FieldInfo{.key = "radius",
-                                     .unit = "",
                                      .doc = "Radius of a sphere or cylinder; longest edge of the data = 1",
                                      .range = Range{0, 2},
                                      .applies = self.kind == ClipKind::Sphere || self.kind == ClipKind::Cylinder});
         visit(self.length, FieldInfo{.key = "length",
-                                     .unit = "",
                                      .doc = "Length of a cylinder; longest edge of the data = 1",
                                      .range = Range{0, 4},
                                      .applies = self.kind == ClipKind::Cylinder});

@@ -39,65 +39,52 @@ struct FlowLayer {
     bool operator==(const FlowLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kSeeds = "Seed points", kSizes = "Length and width", kColors = "Colours";
-        visit(self.vector, FieldInfo{.key = "vector", .unit = "", .doc = "Vector shown", .refersTo = "vector"});
-        visit(
-            self.channel,
-            FieldInfo{.key = "channel", .unit = "", .doc = "Parameter that gives the colours", .refersTo = "channel"});
+        visit(self.vector, FieldInfo{.key = "vector", .doc = "Vector shown", .refersTo = "vector"});
+        visit(self.channel,
+              FieldInfo{.key = "channel", .doc = "Parameter that gives the colours", .refersTo = "channel"});
         visit(self.kind,
               FieldInfo{.key = "kind",
-                        .unit = "",
                         .doc = "Streamlines or tubes along the flow at the time shown, lines, arrows or cones at the "
                                "seed points, or paths through all times of particles that are at the seed points now",
                         .names = kFlowKindNames});
         visit(self.seeds,
               FieldInfo{.key = "seeds",
-                        .unit = "",
                         .doc = "Arrangement of the seed points between the two corners: along the diagonal, on the "
                                "middle plane across the thinnest side, at random in the ball or the box",
                         .names = volume::kSeedShapeNames,
                         .group = kSeeds});
         visit(self.from, FieldInfo{.key = "from",
-                                   .unit = "",
                                    .doc = "First corner of the seed points, 0 to 1 along each axis of the data",
                                    .range = Range{0, 1},
                                    .group = kSeeds});
         visit(self.to, FieldInfo{.key = "to",
-                                 .unit = "",
                                  .doc = "Last corner of the seed points, 0 to 1 along each axis of the data",
                                  .range = Range{0, 1},
                                  .group = kSeeds});
-        visit(self.count, FieldInfo{.key = "count",
-                                    .unit = "",
-                                    .doc = "Number of seed points",
-                                    .range = Range{1, 20000},
-                                    .logScale = true});
+        visit(self.count,
+              FieldInfo{.key = "count", .doc = "Number of seed points", .range = Range{1, 20000}, .logScale = true});
         visit(self.random,
               FieldInfo{.key = "random",
-                        .unit = "",
                         .doc = "Seed of the random number generator for random seed points",
                         .range = Range{0, 1000},
                         .applies = self.seeds == volume::SeedShape::Sphere || self.seeds == volume::SeedShape::Random,
                         .group = kSeeds});
         visit(self.weight,
               FieldInfo{.key = "weight",
-                        .unit = "",
                         .doc = "Parameter to which the density of random seed points is proportional; empty: uniform",
                         .refersTo = "optionalChannel",
                         .group = kSeeds});
         visit(self.seedBrushed, FieldInfo{.key = "seedBrushed",
-                                          .unit = "",
                                           .doc = "Place seed points in the selection; the density of random ones is "
                                                  "proportional to the degree of interest",
                                           .group = kSeeds});
         visit(self.length, FieldInfo{.key = "length",
-                                     .unit = "",
                                      .doc = "Greatest length of a line in each direction; longest edge of the data = 1",
                                      .range = Range{0.001, 100},
                                      .logScale = true,
                                      .applies = followsFlow(self.kind),
                                      .group = kSizes});
         visit(self.speed, FieldInfo{.key = "speed",
-                                    .unit = "",
                                     .doc = "Paths: distance, in the length unit of the data, that a vector of 1 covers "
                                            "in one unit of time; 1 for m, s and m/s",
                                     .range = Range{1e-9, 1e9},
@@ -105,19 +92,16 @@ struct FlowLayer {
                                     .applies = self.kind == FlowKind::Pathlines,
                                     .group = kSizes});
         visit(self.minimumSpeed, FieldInfo{.key = "minimumSpeed",
-                                           .unit = "",
                                            .doc = "Share of the greatest speed below which nothing is drawn",
                                            .range = Range{0, 1},
                                            .group = kSizes});
         visit(self.radius, FieldInfo{.key = "radius",
-                                     .unit = "",
                                      .doc = "Radius of tubes; longest edge as drawn = 1",
                                      .range = Range{1e-4, 0.1},
                                      .logScale = true,
                                      .applies = self.kind == FlowKind::Tubes || self.kind == FlowKind::Pathlines,
                                      .group = kSizes});
         visit(self.size, FieldInfo{.key = "size",
-                                   .unit = "",
                                    .doc = "Length of the longest glyph; longest edge as drawn = 1",
                                    .range = Range{1e-3, 1},
                                    .logScale = true,
@@ -125,24 +109,22 @@ struct FlowLayer {
                                    .group = kSizes});
         visit(self.scaled,
               FieldInfo{.key = "scaled",
-                        .unit = "",
                         .doc = "Make the length of glyphs proportional to the vector; else all have the same length",
                         .applies = !followsFlow(self.kind),
                         .group = kSizes});
         visit(self.style.lineWidth,
               FieldInfo{.key = "lineWidth",
-                        .unit = "pixel",
                         .doc = "Width of lines and hedgehogs",
+                        .unit = "pixel",
                         .range = Range{0.5, 20},
                         .applies = self.kind == FlowKind::Streamlines || self.kind == FlowKind::Hedgehogs,
                         .group = kSizes});
         visit(self.style.color, FieldInfo{.key = "color",
-                                          .unit = "",
                                           .doc = "Colour where the parameter has no value (sRGB)",
                                           .range = Range{0, 1},
                                           .group = kColors});
         visit(self.style.opacity,
-              FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity", .range = Range{0, 1}, .group = kColors});
+              FieldInfo{.key = "opacity", .doc = "Opacity", .range = Range{0, 1}, .group = kColors});
         visit(self.style.look, lookField());
     }
 };

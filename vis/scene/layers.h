@@ -46,42 +46,34 @@ struct VolumeLayer {
     bool operator==(const VolumeLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kValues = "Values along rays";
-        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
-                                      .unit = "",
                                       .doc = "Parameter whose transfer function gives the colours; the opacity still "
                                              "comes from the parameter shown. Gray where it has no value",
                                       .refersTo = "colorChannel"});
-        visit(self.style, FieldInfo{.key = "style",
-                                    .unit = "",
-                                    .doc = "How samples along a ray become one colour",
-                                    .names = kVolumeStyleNames});
+        visit(
+            self.style,
+            FieldInfo{.key = "style", .doc = "How samples along a ray become one colour", .names = kVolumeStyleNames});
         visit(self.quantity, FieldInfo{.key = "quantity",
-                                       .unit = "",
                                        .doc = "Show the value or the magnitude of its gradient",
                                        .names = kQuantityNames,
                                        .group = kValues});
         visit(self.classification,
               FieldInfo{.key = "classification",
-                        .unit = "",
                         .doc = "Composite: colour of the interpolated value (post), interpolated colours of the "
                                "samples (pre), or mean colour of all values between two samples (preintegrated)",
                         .names = kClassificationNames,
                         .applies = self.style == RayStyle::Composite && self.quantity == Quantity::Value,
                         .group = kValues});
         visit(self.threshold, FieldInfo{.key = "threshold",
-                                        .unit = "",
                                         .doc = "Local maximum: smallest value that counts as a maximum",
                                         .applies = self.style == RayStyle::LocalMaximum});
         visit(self.shaded, FieldInfo{.key = "shaded",
-                                     .unit = "",
                                      .doc = "Phong shading by the gradient",
                                      .applies = self.style == RayStyle::Composite});
-        visit(self.density, FieldInfo{.key = "density",
-                                      .unit = "",
-                                      .doc = "Factor on the optical depth",
-                                      .range = Range{0.01, 100},
-                                      .logScale = true});
+        visit(self.density,
+              FieldInfo{
+                  .key = "density", .doc = "Factor on the optical depth", .range = Range{0.01, 100}, .logScale = true});
         visit(self.look, lookField(self.style == RayStyle::Composite));
     }
 };
@@ -101,21 +93,16 @@ struct IsoLayer {
     Look look = {};
     bool operator==(const IsoLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(
-            self.channel,
-            FieldInfo{.key = "channel", .unit = "", .doc = "Parameter whose surface is shown", .refersTo = "channel"});
-        visit(self.value, FieldInfo{.key = "value", .unit = "", .doc = "Value on the surface"});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the surface (sRGB)", .range = Range{0, 1}});
-        visit(self.opacity,
-              FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the surface", .range = Range{0, 1}});
+        visit(self.channel,
+              FieldInfo{.key = "channel", .doc = "Parameter whose surface is shown", .refersTo = "channel"});
+        visit(self.value, FieldInfo{"value", "Value on the surface"});
+        visit(self.color, FieldInfo{.key = "color", .doc = "Colour of the surface (sRGB)", .range = Range{0, 1}});
+        visit(self.opacity, FieldInfo{.key = "opacity", .doc = "Opacity of the surface", .range = Range{0, 1}});
         visit(self.method,
               FieldInfo{.key = "method",
-                        .unit = "",
                         .doc = "Intersect each ray with the surface, or extract the surface once as polygons",
                         .names = kSurfaceMethodNames});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
-                                      .unit = "",
                                       .doc = "Parameter whose transfer function colours the surface; where it has no "
                                              "value the surface has its own colour",
                                       .refersTo = "colorChannel"});
@@ -138,27 +125,22 @@ struct SliceLayer {
     float opacity = 1;
     bool operator==(const SliceLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
-        visit(self.orientation, FieldInfo{.key = "orientation",
-                                          .unit = "",
-                                          .doc = "Axis perpendicular to the slice",
-                                          .names = kSliceOrientationNames});
-        visit(self.atCursor, FieldInfo{.key = "atCursor", .unit = "", .doc = "Pass through the linked cross-hair"});
+        visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(
+            self.orientation,
+            FieldInfo{.key = "orientation", .doc = "Axis perpendicular to the slice", .names = kSliceOrientationNames});
+        visit(self.atCursor, FieldInfo{"atCursor", "Pass through the linked cross-hair"});
         visit(self.position, FieldInfo{.key = "position",
-                                       .unit = "",
                                        .doc = "Position along the normal, 0 to 1 through the box of the data",
                                        .range = Range{0, 1},
                                        .applies = !self.atCursor});
         visit(self.normal, FieldInfo{.key = "normal",
-                                     .unit = "",
                                      .doc = "Normal of an oblique slice",
                                      .range = Range{-1, 1},
                                      .applies = self.orientation == SliceOrientation::Oblique});
         visit(self.contours,
-              FieldInfo{
-                  .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
-        visit(self.opacity,
-              FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity of the slice", .range = Range{0, 1}});
+              FieldInfo{.key = "contours", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
+        visit(self.opacity, FieldInfo{.key = "opacity", .doc = "Opacity of the slice", .range = Range{0, 1}});
     }
 };
 
@@ -210,25 +192,22 @@ struct Layer {
     bool operator==(const Layer&) const = default;
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kOwn = "This layer alone";
-        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the layer"});
-        visit(self.visible, FieldInfo{.key = "visible", .unit = "", .doc = "Show the layer"});
-        visit(self.technique, FieldInfo{.key = "technique", .unit = "", .doc = "What the layer draws"});
+        visit(self.name, FieldInfo{"name", "Name of the layer"});
+        visit(self.visible, FieldInfo{"visible", "Show the layer"});
+        visit(self.technique, FieldInfo{"technique", "What the layer draws"});
         visit(self.lens, FieldInfo{.key = "lens",
-                                   .unit = "",
                                    .doc = "Lens to which the layer belongs: it is drawn only inside; empty: everywhere",
                                    .refersTo = "lens",
                                    .group = kOwn});
         visit(self.transfer,
               FieldInfo{.key = "transfer",
-                        .unit = "",
                         .doc = "Name of the transfer function of this layer alone; empty: that of its parameter",
                         .group = kOwn});
         visit(self.timeShift,
               FieldInfo{
-                  .key = "timeShift", .unit = kUnitOfTimes, .doc = "Time offset from the time shown", .group = kOwn});
+                  .key = "timeShift", .doc = "Time offset from the time shown", .unit = kUnitOfTimes, .group = kOwn});
         visit(self.brushes,
               FieldInfo{.key = "brushes",
-                        .unit = "",
                         .doc = "Effect of the brushes: fade what is not brushed (fade), no effect (none), draw only "
                                "what is not brushed (context) or only what is brushed (focus)",
                         .names = kBrushEffectNames,

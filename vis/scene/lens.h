@@ -45,71 +45,56 @@ struct Lens {
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kPlace = "Place", kData = "Data inside", kList = "Name and colour";
         visit(self.shape, FieldInfo{.key = "shape",
-                                    .unit = "",
                                     .doc = "Shape; a disc faces the viewer and extends through the whole depth",
                                     .names = kLensShapeNames});
         visit(self.effect,
               FieldInfo{.key = "effect",
-                        .unit = "",
                         .doc =
                             "Effect inside the lens: its own layers replace the others, or cut them away if it has "
                             "none (replace); only what is inside is drawn (only); opacity is raised (enhance) or "
                             "lowered (suppress); the picture is magnified (magnify); brushes act inside only (focus)",
                         .names = kLensEffectNames});
         visit(self.center, FieldInfo{.key = "center",
-                                     .unit = kUnitOfLengths,
                                      .doc = "Centre of the lens",
+                                     .unit = kUnitOfLengths,
                                      .applies = !self.followsCursor});
         visit(self.followsCursor,
-              FieldInfo{.key = "followsCursor", .unit = "", .doc = "Follow the linked cross-hair", .group = kPlace});
+              FieldInfo{.key = "followsCursor", .doc = "Follow the linked cross-hair", .group = kPlace});
         visit(self.followsPointer,
               FieldInfo{.key = "followsPointer",
-                        .unit = "",
                         .doc = "Follow the mouse over 3D views and slices (F pins and releases it)",
                         .group = kPlace});
         visit(self.size, FieldInfo{.key = "size",
-                                   .unit = "",
                                    .doc = "Radii or half edge lengths along its axes; longest edge of the data = 1",
                                    .range = Range{0.005, 2},
                                    .logScale = true});
         visit(self.rotation, FieldInfo{.key = "rotation",
-                                       .unit = "deg",
                                        .doc = "Rotation around x, then y, then z",
+                                       .unit = "deg",
                                        .range = Range{-180, 180},
                                        .applies = self.shape != LensShape::Disc,
                                        .group = kPlace});
         visit(self.rim, FieldInfo{.key = "rim",
-                                  .unit = "",
                                   .doc = "Width of the soft edge, as a share of the radius; 0 = a sharp edge",
                                   .range = Range{0, 1}});
-        visit(self.strength,
-              FieldInfo{.key = "strength", .unit = "", .doc = "Strength of the effect", .range = Range{0, 1}});
+        visit(self.strength, FieldInfo{.key = "strength", .doc = "Strength of the effect", .range = Range{0, 1}});
         visit(self.magnification, FieldInfo{.key = "magnification",
-                                            .unit = "",
                                             .doc = "Magnify: magnification in the centre",
                                             .range = Range{1, 8},
                                             .logScale = true,
                                             .applies = self.effect == LensEffect::Magnify});
         visit(self.detail, FieldInfo{.key = "detail",
-                                     .unit = "",
                                      .doc = "Factor on the setting `render.detail` for bricks that touch the lens, in "
                                             "data too large for one texture; 0 = full resolution",
                                      .range = Range{0, 8},
                                      .group = kData});
-        visit(self.marks, FieldInfo{.key = "marks",
-                                    .unit = "",
-                                    .doc = "Mark the samples inside the lens in plots and tables",
-                                    .group = kData});
-        visit(self.name,
-              FieldInfo{.key = "name", .unit = "", .doc = "Name by which layers refer to the lens", .group = kList});
-        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Apply and show this lens", .group = kList});
-        visit(self.inverted,
-              FieldInfo{.key = "inverted", .unit = "", .doc = "Act outside instead of inside", .group = kList});
-        visit(self.color, FieldInfo{.key = "color",
-                                    .unit = "",
-                                    .doc = "Colour of its outline (sRGB)",
-                                    .range = Range{0, 1},
-                                    .group = kList});
+        visit(self.marks,
+              FieldInfo{.key = "marks", .doc = "Mark the samples inside the lens in plots and tables", .group = kData});
+        visit(self.name, FieldInfo{.key = "name", .doc = "Name by which layers refer to the lens", .group = kList});
+        visit(self.enabled, FieldInfo{.key = "enabled", .doc = "Apply and show this lens", .group = kList});
+        visit(self.inverted, FieldInfo{.key = "inverted", .doc = "Act outside instead of inside", .group = kList});
+        visit(self.color,
+              FieldInfo{.key = "color", .doc = "Colour of its outline (sRGB)", .range = Range{0, 1}, .group = kList});
     }
 };
 

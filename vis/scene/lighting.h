@@ -29,29 +29,26 @@ struct Light {
 
     bool operator==(const Light&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "The light is on"});
+        visit(self.enabled, FieldInfo{"enabled", "The light is on"});
         visit(self.kind, FieldInfo{.key = "kind",
-                                   .unit = "",
                                    .doc = "Kind of light: a distant light that turns with the viewer or is fixed to "
                                           "the data, or a point light",
                                    .names = kLightKindNames});
-        visit(self.color, FieldInfo{.key = "color", .unit = "", .doc = "Colour (sRGB)", .range = Range{0, 1}});
-        visit(self.intensity, FieldInfo{.key = "intensity",
-                                        .unit = "",
-                                        .doc = "Brightness; 1 shows white surfaces as white",
-                                        .range = Range{0, 20}});
+        visit(self.color, FieldInfo{.key = "color", .doc = "Colour (sRGB)", .range = Range{0, 1}});
+        visit(
+            self.intensity,
+            FieldInfo{.key = "intensity", .doc = "Brightness; 1 shows white surfaces as white", .range = Range{0, 20}});
         visit(self.azimuth, FieldInfo{.key = "azimuth",
-                                      .unit = "deg",
                                       .doc = "Angle to the right of the viewer, or of the z axis",
+                                      .unit = "deg",
                                       .range = Range{-180, 180},
                                       .applies = self.kind != LightKind::Point});
         visit(self.elevation, FieldInfo{.key = "elevation",
-                                        .unit = "deg",
                                         .doc = "Angle above the viewer, or towards the y axis",
+                                        .unit = "deg",
                                         .range = Range{-90, 90},
                                         .applies = self.kind != LightKind::Point});
         visit(self.position, FieldInfo{.key = "position",
-                                       .unit = "",
                                        .doc = "Distance of a point light from the centre; longest edge of the data = 1",
                                        .range = Range{-10, 10},
                                        .applies = self.kind == LightKind::Point});
@@ -71,33 +68,28 @@ struct EnvironmentLight {
     bool operator==(const EnvironmentLight&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.kind, FieldInfo{.key = "kind",
-                                   .unit = "",
                                    .doc = "Surroundings that light the scene and are reflected in it",
                                    .names = kEnvironmentNames});
         visit(self.picture,
               FieldInfo{.key = "picture",
-                        .unit = "",
                         .doc = "Picture of the surroundings for kind \"picture\", Radiance (.hdr) or PNG: a panorama "
                                "of 2:1 with its middle behind the data, or a cube map cross of 4:3 or 3:4",
                         .refersTo = "path",
                         .applies = self.kind == Environment::Picture});
         visit(self.strength, FieldInfo{.key = "strength",
-                                       .unit = "",
                                        .doc = "Brightness of the surroundings",
                                        .range = Range{0, 5},
                                        .applies = self.kind != Environment::None});
         visit(self.reflection, FieldInfo{.key = "reflection",
-                                         .unit = "",
                                          .doc = "Strength of reflections of the surroundings",
                                          .range = Range{0, 4},
                                          .applies = self.kind != Environment::None});
         visit(self.turn, FieldInfo{.key = "turn",
-                                   .unit = "deg",
                                    .doc = "Rotation of the surroundings around the vertical axis",
+                                   .unit = "deg",
                                    .range = Range{-180, 180},
                                    .applies = self.kind != Environment::None});
         visit(self.follows, FieldInfo{.key = "follows",
-                                      .unit = "",
                                       .doc = "The surroundings turn with the viewer",
                                       .applies = self.kind != Environment::None});
     }
@@ -116,35 +108,28 @@ struct Shadows {
     bool operator==(const Shadows&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.strength, FieldInfo{.key = "strength",
-                                       .unit = "",
                                        .doc = "Darkness of the shadows of the first three lights; 0 = none",
                                        .range = Range{0, 1}});
         visit(self.occlusion, FieldInfo{.key = "occlusion",
-                                        .unit = "",
                                         .doc = "Ambient occlusion, the darkening of hollows; 0 = none",
                                         .range = Range{0, 1}});
         visit(self.reach, FieldInfo{.key = "reach",
-                                    .unit = "",
                                     .doc = "Radius of ambient occlusion; longest edge of the data = 1",
                                     .range = Range{0.01, 1},
                                     .logScale = true,
                                     .applies = self.occlusion > 0});
         visit(self.translucency,
               FieldInfo{.key = "translucency",
-                        .unit = "",
                         .doc = "Translucency: light that passes through the volume and takes its colour; 0 = none",
                         .range = Range{0, 1}});
         visit(self.scatter, FieldInfo{.key = "scatter",
-                                      .unit = "",
                                       .doc = "How far translucent light spreads sideways",
                                       .range = Range{0, 1},
                                       .applies = self.translucency > 0});
         visit(self.meshes, FieldInfo{.key = "meshes",
-                                     .unit = "",
                                      .doc = "Polygon surfaces cast shadows on volumes and on each other",
                                      .applies = self.any()});
         visit(self.resolution, FieldInfo{.key = "resolution",
-                                         .unit = "",
                                          .doc = "Cells of the light volume along the longest edge",
                                          .range = Range{16, 128},
                                          .applies = self.any()});
@@ -168,53 +153,43 @@ struct Lighting {
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kSurface = "Reflection";
         visit(self.model, FieldInfo{.key = "model",
-                                    .unit = "",
                                     .doc = "Reflection model: Phong, or a physical one (GGX microfacets over a Lambert "
                                            "base, energy conserving)",
                                     .names = kLightModelNames});
-        visit(self.ambient, FieldInfo{.key = "ambient", .unit = "", .doc = "Ambient light", .range = Range{0, 1}});
-        visit(self.lights,
-              FieldInfo{.key = "lights", .unit = "", .doc = "Lights; up to 16, or any number with `inMaps`"});
+        visit(self.ambient, FieldInfo{.key = "ambient", .doc = "Ambient light", .range = Range{0, 1}});
+        visit(self.lights, FieldInfo{"lights", "Lights; up to 16, or any number with `inMaps`"});
         visit(self.inMaps,
-              FieldInfo{.key = "inMaps",
-                        .unit = "",
-                        .doc = "Combine all lights in cube maps: any number at the cost of one, without shadows"});
-        visit(self.environment, FieldInfo{.key = "environment", .unit = "", .doc = "Light from the surroundings"});
-        visit(self.shadows, FieldInfo{.key = "shadows", .unit = "", .doc = "Shadows, ambient occlusion, translucency"});
+              FieldInfo{"inMaps", "Combine all lights in cube maps: any number at the cost of one, without shadows"});
+        visit(self.environment, FieldInfo{"environment", "Light from the surroundings"});
+        visit(self.shadows, FieldInfo{"shadows", "Shadows, ambient occlusion, translucency"});
         visit(self.diffuse, FieldInfo{.key = "diffuse",
-                                      .unit = "",
                                       .doc = "Diffuse reflection (Phong)",
                                       .range = Range{0, 1},
                                       .applies = self.model == LightModel::Phong,
                                       .group = kSurface});
         visit(self.specular, FieldInfo{.key = "specular",
-                                       .unit = "",
                                        .doc = "Specular reflection (Phong)",
                                        .range = Range{0, 1},
                                        .applies = self.model == LightModel::Phong,
                                        .group = kSurface});
         visit(self.shininess, FieldInfo{.key = "shininess",
-                                        .unit = "",
                                         .doc = "Phong exponent",
                                         .range = Range{1, 200},
                                         .logScale = true,
                                         .applies = self.model == LightModel::Phong,
                                         .group = kSurface});
         visit(self.roughness, FieldInfo{.key = "roughness",
-                                        .unit = "",
                                         .doc = "Roughness of the surface: 0.05 polished, 1 dull (physical)",
                                         .range = Range{0.05, 1},
                                         .applies = self.model == LightModel::Physical,
                                         .group = kSurface});
         visit(self.metalness, FieldInfo{.key = "metalness",
-                                        .unit = "",
                                         .doc = "Metalness: 1 reflects in the colour of the surface (physical)",
                                         .range = Range{0, 1},
                                         .applies = self.model == LightModel::Physical,
                                         .group = kSurface});
         visit(self.reflectance,
               FieldInfo{.key = "reflectance",
-                        .unit = "",
                         .doc = "Share of light reflected at normal incidence: 0.04 plastic, 0.17 gem (physical)",
                         .range = Range{0, 1},
                         .applies = self.model == LightModel::Physical,

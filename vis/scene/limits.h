@@ -15,25 +15,24 @@ struct RenderLimits {
     bool operator==(const RenderLimits&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.textureMemory, FieldInfo{.key = "textureMemory",
-                                            .unit = "MiB",
                                             .doc = "Memory for textures",
+                                            .unit = "MiB",
                                             .range = Range{64, 65536},
                                             .logScale = true});
         visit(self.brickMemory, FieldInfo{.key = "brickMemory",
-                                          .unit = "MiB",
                                           .doc = "Memory for decoded bricks",
+                                          .unit = "MiB",
                                           .range = Range{64, 1048576},
                                           .logScale = true});
         visit(self.keptChange,
               FieldInfo{.key = "keptChange",
-                        .unit = "",
                         .doc = "Bricks whose values change by less than this share of their range between two times "
                                "keep their textures; 0 = only bricks that do not change",
                         .range = Range{0, 0.1}});
         visit(self.frameTime,
               FieldInfo{.key = "frameTime",
-                        .unit = "ms",
                         .doc = "Time to draw one picture while something moves; resolution and step are adapted to it",
+                        .unit = "ms",
                         .range = Range{5, 1000},
                         .logScale = true});
     }

@@ -20,17 +20,12 @@ struct WarmCool {
     float ownColor = 0.9f;
     bool operator==(const WarmCool&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.amount,
-              FieldInfo{.key = "amount", .unit = "", .doc = "Share of tone shading: 0 = plain", .range = Range{0, 1}});
+        visit(self.amount, FieldInfo{.key = "amount", .doc = "Share of tone shading: 0 = plain", .range = Range{0, 1}});
         visit(self.warmColor,
-              FieldInfo{
-                  .key = "warmColor", .unit = "", .doc = "Tint towards the first light (sRGB)", .range = Range{0, 1}});
-        visit(self.coolColor, FieldInfo{.key = "coolColor",
-                                        .unit = "",
-                                        .doc = "Tint away from the first light (sRGB)",
-                                        .range = Range{0, 1}});
+              FieldInfo{.key = "warmColor", .doc = "Tint towards the first light (sRGB)", .range = Range{0, 1}});
+        visit(self.coolColor,
+              FieldInfo{.key = "coolColor", .doc = "Tint away from the first light (sRGB)", .range = Range{0, 1}});
         visit(self.ownColor, FieldInfo{.key = "ownColor",
-                                       .unit = "",
                                        .doc = "Share of the material's own colour: 1 and above = tinted by the two "
                                               "colours, 0 = these colours alone",
                                        .range = Range{0, 2}});
@@ -43,15 +38,11 @@ struct BoundaryEnhancement {
     bool operator==(const BoundaryEnhancement&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.retained, FieldInfo{.key = "retained",
-                                       .unit = "",
                                        .doc = "Share of opacity that stays where nothing changes",
                                        .range = Range{0, 2}});
-        visit(self.strength, FieldInfo{.key = "strength",
-                                       .unit = "",
-                                       .doc = "Opacity added where values change most",
-                                       .range = Range{0, 20}});
+        visit(self.strength,
+              FieldInfo{.key = "strength", .doc = "Opacity added where values change most", .range = Range{0, 20}});
         visit(self.exponent, FieldInfo{.key = "exponent",
-                                       .unit = "",
                                        .doc = "Exponent on the gradient magnitude; larger = only the steepest places",
                                        .range = Range{0.1, 8},
                                        .logScale = true});
@@ -66,23 +57,17 @@ struct SilhouetteEnhancement {
     bool operator==(const SilhouetteEnhancement&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.retained, FieldInfo{.key = "retained",
-                                       .unit = "",
                                        .doc = "Share of opacity that stays where the surface faces the viewer",
                                        .range = Range{0, 2}});
-        visit(self.strength, FieldInfo{.key = "strength",
-                                       .unit = "",
-                                       .doc = "Opacity added where the surface turns away",
-                                       .range = Range{0, 20}});
+        visit(self.strength,
+              FieldInfo{.key = "strength", .doc = "Opacity added where the surface turns away", .range = Range{0, 20}});
         visit(self.exponent, FieldInfo{.key = "exponent",
-                                       .unit = "",
                                        .doc = "Exponent; larger = narrower silhouettes",
                                        .range = Range{0.25, 16},
                                        .logScale = true});
         visit(self.ink,
-              FieldInfo{
-                  .key = "ink", .unit = "", .doc = "Share of ink where the surface turns away", .range = Range{0, 1}});
+              FieldInfo{.key = "ink", .doc = "Share of ink where the surface turns away", .range = Range{0, 1}});
         visit(self.inkColor, FieldInfo{.key = "inkColor",
-                                       .unit = "",
                                        .doc = "Own colour of the ink (sRGB); without one it is dark on a light ground "
                                               "and light on a dark one",
                                        .range = Range{0, 1},
@@ -97,17 +82,14 @@ struct DistanceColor {
     glm::vec3 color{0.55f, 0.65f, 0.8f}; ///< sRGB
     bool operator==(const DistanceColor&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(
-            self.amount,
-            FieldInfo{.key = "amount", .unit = "", .doc = "Strength at the far end of the box", .range = Range{0, 1}});
+        visit(self.amount,
+              FieldInfo{.key = "amount", .doc = "Strength at the far end of the box", .range = Range{0, 1}});
         visit(self.exponent, FieldInfo{.key = "exponent",
-                                       .unit = "",
                                        .doc = "Exponent; larger = the foreground keeps its colours further",
                                        .range = Range{0.1, 8},
                                        .logScale = true});
-        visit(self.toBackground, FieldInfo{.key = "toBackground", .unit = "", .doc = "Blend to the background colour"});
+        visit(self.toBackground, FieldInfo{"toBackground", "Blend to the background colour"});
         visit(self.color, FieldInfo{.key = "color",
-                                    .unit = "",
                                     .doc = "Colour to blend to instead of the background (sRGB)",
                                     .range = Range{0, 1},
                                     .applies = !self.toBackground});
@@ -123,16 +105,12 @@ struct Cartoon {
     std::optional<glm::vec3> outlineColor = {};
     bool operator==(const Cartoon&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.amount,
-              FieldInfo{.key = "amount", .unit = "", .doc = "Share of flat shading: 0 = plain", .range = Range{0, 1}});
-        visit(self.steps,
-              FieldInfo{.key = "steps", .unit = "", .doc = "Number of bands of light", .range = Range{2, 12}});
-        visit(self.shadow,
-              FieldInfo{.key = "shadow", .unit = "", .doc = "Brightness of the darkest band", .range = Range{0, 1}});
+        visit(self.amount, FieldInfo{.key = "amount", .doc = "Share of flat shading: 0 = plain", .range = Range{0, 1}});
+        visit(self.steps, FieldInfo{.key = "steps", .doc = "Number of bands of light", .range = Range{2, 12}});
+        visit(self.shadow, FieldInfo{.key = "shadow", .doc = "Brightness of the darkest band", .range = Range{0, 1}});
         visit(self.outline,
-              FieldInfo{.key = "outline", .unit = "pixel", .doc = "Width of outlines", .range = Range{0, 12}});
+              FieldInfo{.key = "outline", .doc = "Width of outlines", .unit = "pixel", .range = Range{0, 12}});
         visit(self.outlineColor, FieldInfo{.key = "outlineColor",
-                                           .unit = "",
                                            .doc = "Own colour of outlines (sRGB); without one the inner half contrasts "
                                                   "with the surface and the outer half with the ground",
                                            .range = Range{0, 1},
@@ -162,104 +140,87 @@ struct CharcoalDrawing {
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kTones = "Tones", kOutlines = "Outlines", kGrain = "Grain", kStrokes = "Strokes";
         visit(self.stick, FieldInfo{.key = "stick",
-                                    .unit = "",
                                     .doc = "Charcoal draws what is dark and brings light paper, chalk what is light "
                                            "and dark paper",
                                     .names = kStickNames});
-        visit(self.mark,
-              FieldInfo{.key = "mark", .unit = "", .doc = "Strokes, or the dots of stippling", .names = kMarkNames});
+        visit(self.mark, FieldInfo{.key = "mark", .doc = "Strokes, or the dots of stippling", .names = kMarkNames});
         visit(self.color, FieldInfo{.key = "color",
-                                    .unit = "",
                                     .doc = "Own colour of the stick (sRGB); without one it is dark and draws what is "
                                            "dark on a light ground, light and draws what is light on a dark one",
                                     .range = Range{0, 1}});
         visit(self.pressure, FieldInfo{.key = "pressure",
-                                       .unit = "",
                                        .doc = "Largest share of the paper that a stroke covers",
                                        .range = Range{0, 1}});
         visit(self.contrast, FieldInfo{.key = "contrast",
-                                       .unit = "",
                                        .doc = "Exponent on darkness: larger = lighter middle tones",
                                        .range = Range{0.25, 6},
                                        .logScale = true});
         visit(self.bare, FieldInfo{.key = "bare",
-                                   .unit = "",
                                    .doc = "Share of the tones, from the lightest on, that leave the paper bare",
                                    .range = Range{0, 0.9},
                                    .group = kTones});
         visit(self.localTone,
               FieldInfo{.key = "localTone",
-                        .unit = "",
                         .doc = "Influence of the colour of the surface on darkness, beside light and shade",
                         .range = Range{0, 1},
                         .group = kTones});
         visit(self.steepness, FieldInfo{.key = "steepness",
-                                        .unit = "",
                                         .doc = "Share of the tone that is drawn only where values change steeply",
                                         .range = Range{0, 1},
                                         .group = kTones});
         visit(self.outline, FieldInfo{.key = "outline",
-                                      .unit = "pixel",
                                       .doc = "Width of outlines",
+                                      .unit = "pixel",
                                       .range = Range{0, 12},
                                       .group = kOutlines});
-        visit(self.outlineStrength, FieldInfo{.key = "outlineStrength",
-                                              .unit = "",
-                                              .doc = "Darkness of outlines",
-                                              .range = Range{0, 1},
-                                              .group = kOutlines});
+        visit(self.outlineStrength,
+              FieldInfo{
+                  .key = "outlineStrength", .doc = "Darkness of outlines", .range = Range{0, 1}, .group = kOutlines});
         visit(self.closure, FieldInfo{.key = "closure",
-                                      .unit = "",
                                       .doc = "Share by which outlines are left open where light falls",
                                       .range = Range{0, 1},
                                       .group = kOutlines});
         visit(self.grain, FieldInfo{.key = "grain",
-                                    .unit = "pixel",
                                     .doc = "Size of the paper's grain, on the object",
+                                    .unit = "pixel",
                                     .range = Range{0.5, 24},
                                     .logScale = true,
                                     .group = kGrain});
         visit(self.hardness, FieldInfo{.key = "hardness",
-                                       .unit = "",
                                        .doc = "Hardness of the grain: 1 is only ink or paper, 0 is continuous tone",
                                        .range = Range{0, 1},
                                        .group = kGrain});
         const bool stroked = self.mark == Mark::Strokes;
         visit(self.tooth, FieldInfo{.key = "tooth",
-                                    .unit = "",
                                     .doc = "How much the paper's grain breaks strokes: 0 = they are lines as wide as "
                                            "the tone is dark",
                                     .range = Range{0, 1},
                                     .applies = stroked,
                                     .group = kStrokes});
         visit(self.strokes, FieldInfo{.key = "strokes",
-                                      .unit = "",
                                       .doc = "Visibility of single strokes",
                                       .range = Range{0, 1},
                                       .applies = stroked,
                                       .group = kStrokes});
         visit(self.follow, FieldInfo{.key = "follow",
-                                     .unit = "",
                                      .doc = "How much the greatest curvature of the surface directs the strokes; where "
                                             "it is even, and with 0 everywhere, they keep one direction in space",
                                      .range = Range{0, 1},
                                      .applies = stroked,
                                      .group = kStrokes});
         visit(self.crossing, FieldInfo{.key = "crossing",
-                                       .unit = "",
                                        .doc = "Darkness from which on a second layer of strokes crosses the first; 1 = "
                                               "none",
                                        .range = Range{0, 1},
                                        .applies = stroked,
                                        .group = kStrokes});
         visit(self.angle, FieldInfo{.key = "angle",
-                                    .unit = "deg",
                                     .doc = "Turn of the strokes on the surface",
+                                    .unit = "deg",
                                     .range = Range{-90, 90},
                                     .applies = stroked,
                                     .group = kStrokes});
         visit(self.smudge, FieldInfo{.key = "smudge",
-                                     .unit = "",
                                      .doc = "Smudging: 0 = grain and strokes, 1 = even tone",
                                      .range = Range{0, 1},
                                      .group = kGrain});
@@ -276,20 +237,16 @@ struct WireFrame {
     bool operator==(const WireFrame&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.spacing, FieldInfo{.key = "spacing",
-                                      .unit = "",
                                       .doc = "Distance between lines; longest edge of the data = 1",
                                       .range = Range{0.002, 1},
                                       .logScale = true});
         visit(self.width,
-              FieldInfo{.key = "width", .unit = "pixel", .doc = "Width of the lines", .range = Range{0.2, 8}});
-        visit(self.retained, FieldInfo{.key = "retained",
-                                       .unit = "",
-                                       .doc = "Share of opacity that stays between the lines",
-                                       .range = Range{0, 1}});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the lines (sRGB)", .range = Range{0, 1}});
+              FieldInfo{.key = "width", .doc = "Width of the lines", .unit = "pixel", .range = Range{0.2, 8}});
+        visit(
+            self.retained,
+            FieldInfo{.key = "retained", .doc = "Share of opacity that stays between the lines", .range = Range{0, 1}});
+        visit(self.color, FieldInfo{.key = "color", .doc = "Colour of the lines (sRGB)", .range = Range{0, 1}});
         visit(self.ownColor, FieldInfo{.key = "ownColor",
-                                       .unit = "",
                                        .doc = "Blend from the line colour (0) to the colour of the surface (1)",
                                        .range = Range{0, 1}});
     }
@@ -320,29 +277,26 @@ struct Look {
 
     static void describe(auto& self, auto&& visit) {
         visit(self.part, FieldInfo{.key = "part",
-                                   .unit = "",
                                    .doc = "What is drawn in this style while brushes are active: everything, what is "
                                           "not brushed (context), or what is brushed (focus)",
                                    .names = kLookPartNames});
         visit(self.smooth, FieldInfo{.key = "smooth",
-                                     .unit = "voxel",
                                      .doc = "Width over which the normals of a drawing are smoothed: noise and details "
                                             "smaller than that do not show; 0 = those of plain shading",
+                                     .unit = "voxel",
                                      .range = Range{0, 8}});
-        visit(self.tone, FieldInfo{.key = "tone", .unit = "", .doc = "Tone shading: warm light, cool shade (Gooch)"});
-        visit(self.boundary,
-              FieldInfo{.key = "boundary", .unit = "", .doc = "More opacity where values change steeply"});
-        visit(self.silhouette,
-              FieldInfo{.key = "silhouette", .unit = "", .doc = "More opacity where surfaces turn away"});
-        visit(self.distance, FieldInfo{.key = "distance", .unit = "", .doc = "Colours fade with distance"});
-        visit(self.cartoon, FieldInfo{.key = "cartoon", .unit = "", .doc = "Light in steps, with outlines"});
-        visit(self.charcoal, FieldInfo{.key = "charcoal", .unit = "", .doc = "Strokes on paper grain"});
-        visit(self.wire, FieldInfo{.key = "wire", .unit = "", .doc = "Lines across the surface, little between them"});
+        visit(self.tone, FieldInfo{"tone", "Tone shading: warm light, cool shade (Gooch)"});
+        visit(self.boundary, FieldInfo{"boundary", "More opacity where values change steeply"});
+        visit(self.silhouette, FieldInfo{"silhouette", "More opacity where surfaces turn away"});
+        visit(self.distance, FieldInfo{"distance", "Colours fade with distance"});
+        visit(self.cartoon, FieldInfo{"cartoon", "Light in steps, with outlines"});
+        visit(self.charcoal, FieldInfo{"charcoal", "Strokes on paper grain"});
+        visit(self.wire, FieldInfo{"wire", "Lines across the surface, little between them"});
     }
 };
 
 constexpr FieldInfo lookField(bool applies = true) {
-    return {.key = "look", .unit = "", .doc = "Style of drawing", .applies = applies};
+    return {.key = "look", .doc = "Style of drawing", .applies = applies};
 }
 
 /// Paper as the ground of a picture.
@@ -351,15 +305,13 @@ struct Paper {
     float tooth = 0.5f, grain = 2;
     bool operator==(const Paper&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the paper (sRGB)", .range = Range{0, 1}});
+        visit(self.color, FieldInfo{.key = "color", .doc = "Colour of the paper (sRGB)", .range = Range{0, 1}});
         visit(self.tooth, FieldInfo{.key = "tooth",
-                                    .unit = "",
                                     .doc = "Visibility of the paper texture; 0 = a plain background",
                                     .range = Range{0, 1}});
         visit(self.grain, FieldInfo{.key = "grain",
-                                    .unit = "pixel",
                                     .doc = "Size of the paper texture",
+                                    .unit = "pixel",
                                     .range = Range{0.5, 16},
                                     .logScale = true});
     }

@@ -52,44 +52,41 @@ struct RenderParams {
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kParts = "Large data", kGradients = "Gradients", kSteps = "Steps along rays";
         visit(self.filter,
-              FieldInfo{
-                  .key = "filter", .unit = "", .doc = "Reconstruction between lattice points", .names = kFilterNames});
+              FieldInfo{.key = "filter", .doc = "Reconstruction between lattice points", .names = kFilterNames});
         visit(self.stepVoxels,
               FieldInfo{.key = "step",
-                        .unit = "voxel",
                         .doc = "Distance between samples along a ray, in voxels of the finest level drawn",
+                        .unit = "voxel",
                         .range = Range{0.05, 4},
                         .logScale = true});
         visit(self.detail, FieldInfo{.key = "detail",
-                                     .unit = "pixel",
                                      .doc = "Voxels smaller than this are shown at a coarser level, in data too large "
                                             "for one texture; 0 = full resolution",
+                                     .unit = "pixel",
                                      .range = Range{0, 8}});
         visit(self.importance,
               FieldInfo{.key = "importance",
-                        .unit = "level",
                         .doc = "Number of levels by which the least important bricks may be coarser than the most "
                                "important one; 0 = the level depends on the size on screen only",
+                        .unit = "level",
                         .range = Range{0, 4},
                         .group = kParts});
-        visit(self.limits, FieldInfo{.key = "limits", .unit = "", .doc = "Limits of memory and time", .group = kParts});
+        visit(self.limits, FieldInfo{.key = "limits", .doc = "Limits of memory and time", .group = kParts});
         visit(self.gradient,
               FieldInfo{.key = "gradient",
-                        .unit = "",
                         .doc = "How gradients are computed: by differences of the nearest neighbours in the lattice "
                                "(sharp; along the diagonals on BCC), or over two cells along the axes (smooth)",
                         .names = volume::kGradientSpanNames,
                         .group = kGradients});
         visit(self.normalBits,
               FieldInfo{.key = "normalBits",
-                        .unit = "bit",
                         .doc = "Bits for each of the two coordinates of the gradient direction in shading; 0 = exact",
+                        .unit = "bit",
                         .range = Range{0, 16},
                         .group = kGradients});
         visit(self.proxy,
               FieldInfo{
                   .key = "proxy",
-                  .unit = "",
                   .doc =
                       "Proxy geometry of composite volumes: rays, or for comparison planes facing the viewer (slices), "
                       "spheres around the eye (shells) or lattice planes (stacks). Other layers always use rays",
@@ -97,7 +94,6 @@ struct RenderParams {
                   .group = kSteps});
         visit(self.engine,
               FieldInfo{.key = "engine",
-                        .unit = "",
                         .doc =
                             "What casts rays: OpenGL, or the vector units of the processor (auto: where OpenGL has no "
                             "graphics card, or still compiles). OpenGL draws what the processor cannot; the status bar "
@@ -105,20 +101,16 @@ struct RenderParams {
                         .names = kEngineNames});
         visit(self.jitter,
               FieldInfo{.key = "jitter",
-                        .unit = "",
                         .doc = "Shift the samples of each ray at random: fine noise instead of wood-grain artefacts",
                         .group = kSteps});
         visit(self.samples, FieldInfo{.key = "samples",
-                                      .unit = "",
                                       .doc = "Rays per pixel when the picture is at rest; with depth of field 64",
                                       .range = Range{1, 64}});
         visit(self.cullHidden, FieldInfo{.key = "cullHidden",
-                                         .unit = "",
                                          .doc = "Keep bricks behind opaque ones coarse until they become visible",
                                          .group = kParts});
         visit(self.adaptiveStep,
               FieldInfo{.key = "adaptiveStep",
-                        .unit = "",
                         .doc = "Largest change of light and opacity over one step; where volumes are smooth under "
                                "their transfer functions steps become longer. 0 = all steps have the same length",
                         .range = Range{0, 0.1},

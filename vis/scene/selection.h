@@ -22,20 +22,17 @@ struct BrushInterval {
 
     bool operator==(const BrushInterval&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel,
-              FieldInfo{.key = "channel", .unit = "", .doc = "Parameter of the range", .refersTo = "channel"});
-        visit(self.lo, FieldInfo{.key = "lo", .unit = "", .doc = "Lower end"});
-        visit(self.hi, FieldInfo{.key = "hi", .unit = "", .doc = "Upper end"});
-        visit(self.soft, FieldInfo{.key = "soft", .unit = "", .doc = "Width of the soft edge"});
+        visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter of the range", .refersTo = "channel"});
+        visit(self.lo, FieldInfo{"lo", "Lower end"});
+        visit(self.hi, FieldInfo{"hi", "Upper end"});
+        visit(self.soft, FieldInfo{"soft", "Width of the soft edge"});
     }
 };
 
 inline constexpr FieldInfo kSoftShare{
-    .key = "soft", .unit = "", .doc = "Width of the soft edge outside, as a share of the radius", .range = Range{0, 2}};
-inline constexpr FieldInfo kBrushX{
-    .key = "x", .unit = "", .doc = "Parameter along the first axis", .refersTo = "channel"};
-inline constexpr FieldInfo kBrushY{
-    .key = "y", .unit = "", .doc = "Parameter along the second axis", .refersTo = "channel"};
+    .key = "soft", .doc = "Width of the soft edge outside, as a share of the radius", .range = Range{0, 2}};
+inline constexpr FieldInfo kBrushX{.key = "x", .doc = "Parameter along the first axis", .refersTo = "channel"};
+inline constexpr FieldInfo kBrushY{.key = "y", .doc = "Parameter along the second axis", .refersTo = "channel"};
 
 /// An interval in one channel, a rectangle in two, a box in more: the degree of interest is the minimum over the
 /// intervals.
@@ -44,7 +41,7 @@ struct RangeRegion {
     std::vector<BrushInterval> intervals;
     bool operator==(const RangeRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.intervals, FieldInfo{.key = "intervals", .unit = "", .doc = "Ranges of parameters; all must hold"});
+        visit(self.intervals, FieldInfo{"intervals", "Ranges of parameters; all must hold"});
     }
 };
 
@@ -60,10 +57,9 @@ struct EllipseRegion {
     static void describe(auto& self, auto&& visit) {
         visit(self.x, kBrushX);
         visit(self.y, kBrushY);
-        visit(self.center, FieldInfo{.key = "center", .unit = "", .doc = "Values at the centre"});
-        visit(self.radius, FieldInfo{.key = "radius", .unit = "", .doc = "Half widths along the two axes"});
+        visit(self.center, FieldInfo{"center", "Values at the centre"});
+        visit(self.radius, FieldInfo{"radius", "Half widths along the two axes"});
         visit(self.correlation, FieldInfo{.key = "correlation",
-                                          .unit = "",
                                           .doc = "Tilt: 0 = along the axes, towards 1 = along the rising diagonal",
                                           .range = Range{-0.99, 0.99}});
         visit(self.soft, kSoftShare);
@@ -80,7 +76,7 @@ struct LassoRegion {
     static void describe(auto& self, auto&& visit) {
         visit(self.x, kBrushX);
         visit(self.y, kBrushY);
-        visit(self.points, FieldInfo{.key = "points", .unit = "", .doc = "Corners of the polygon", .hidden = true});
+        visit(self.points, FieldInfo{.key = "points", .doc = "Corners of the polygon", .hidden = true});
         visit(self.soft, kSoftShare);
     }
 };
@@ -92,8 +88,8 @@ struct SphereRegion {
     double soft = 0;
     bool operator==(const SphereRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.center, FieldInfo{.key = "center", .unit = kUnitOfLengths, .doc = "Centre of the ball"});
-        visit(self.radius, FieldInfo{.key = "radius", .unit = kUnitOfLengths, .doc = "Radii along x, y, z"});
+        visit(self.center, FieldInfo{.key = "center", .doc = "Centre of the ball", .unit = kUnitOfLengths});
+        visit(self.radius, FieldInfo{.key = "radius", .doc = "Radii along x, y, z", .unit = kUnitOfLengths});
         visit(self.soft, kSoftShare);
     }
 };
@@ -104,9 +100,9 @@ struct BoxRegion {
     double soft = 0;
     bool operator==(const BoxRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.center, FieldInfo{.key = "center", .unit = kUnitOfLengths, .doc = "Centre of the box"});
+        visit(self.center, FieldInfo{.key = "center", .doc = "Centre of the box", .unit = kUnitOfLengths});
         visit(self.radius,
-              FieldInfo{.key = "radius", .unit = kUnitOfLengths, .doc = "Half edge lengths along x, y, z"});
+              FieldInfo{.key = "radius", .doc = "Half edge lengths along x, y, z", .unit = kUnitOfLengths});
         visit(self.soft, kSoftShare);
     }
 };
@@ -118,7 +114,6 @@ struct LensRegion {
     bool operator==(const LensRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.lens, FieldInfo{.key = "lens",
-                                   .unit = "",
                                    .doc = "Lens whose inside is selected; empty: every lens with `marks`",
                                    .refersTo = "lens"});
     }
@@ -139,15 +134,14 @@ struct Brush {
 
     bool operator==(const Brush&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the brush"});
-        visit(self.color, FieldInfo{.key = "color", .unit = "", .doc = "Colour in the plots", .range = Range{0, 1}});
-        visit(self.enabled, FieldInfo{.key = "enabled", .unit = "", .doc = "Use this brush in the selection"});
-        visit(self.inverted, FieldInfo{.key = "inverted", .unit = "", .doc = "Select what lies outside"});
+        visit(self.name, FieldInfo{"name", "Name of the brush"});
+        visit(self.color, FieldInfo{.key = "color", .doc = "Colour in the plots", .range = Range{0, 1}});
+        visit(self.enabled, FieldInfo{"enabled", "Use this brush in the selection"});
+        visit(self.inverted, FieldInfo{"inverted", "Select what lies outside"});
         visit(self.combine, FieldInfo{.key = "combine",
-                                      .unit = "",
                                       .doc = "How it combines with the brushes before it: and, or, minus",
                                       .names = kBrushCombineNames});
-        visit(self.region, FieldInfo{.key = "region", .unit = "", .doc = "What the brush selects"});
+        visit(self.region, FieldInfo{"region", "What the brush selects"});
     }
 };
 
@@ -165,28 +159,21 @@ struct Selection {
 
     bool operator==(const Selection&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.brushes, FieldInfo{.key = "brushes",
-                                      .unit = "",
-                                      .doc = "Brushes, in the order in which they are combined",
-                                      .hidden = true});
+        visit(self.brushes,
+              FieldInfo{.key = "brushes", .doc = "Brushes, in the order in which they are combined", .hidden = true});
         visit(self.contextOpacity,
-              FieldInfo{
-                  .key = "contextOpacity", .unit = "", .doc = "Opacity of what is not brushed", .range = Range{0, 1}});
+              FieldInfo{.key = "contextOpacity", .doc = "Opacity of what is not brushed", .range = Range{0, 1}});
         visit(self.contextSaturation, FieldInfo{.key = "contextSaturation",
-                                                .unit = "",
                                                 .doc = "Colour saturation of what is not brushed",
                                                 .range = Range{0, 1}});
         visit(self.contextLightness, FieldInfo{.key = "contextLightness",
-                                               .unit = "",
                                                .doc = "Lightness of what is not brushed: 0 black, 1 unchanged, 2 white",
                                                .range = Range{0, 2}});
         visit(self.brushColor, FieldInfo{.key = "brushColor",
-                                         .unit = "",
                                          .doc = "How strongly brushed samples take the colour of their brush",
                                          .range = Range{0, 1}});
         visit(self.contextBlur,
               FieldInfo{.key = "contextBlur",
-                        .unit = "",
                         .doc = "Blur radius of what is not brushed, as a share of the picture's height",
                         .range = Range{0, 0.05}});
     }

@@ -18,16 +18,14 @@ struct Tone {
     bool operator==(const Tone&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.curve, FieldInfo{.key = "curve",
-                                    .unit = "",
                                     .doc = "How bright light is mapped to the range of the screen; none clips it",
                                     .names = kToneCurveNames});
         visit(self.exposure, FieldInfo{.key = "exposure",
-                                       .unit = "stops",
                                        .doc = "Exposure; each stop doubles the brightness. Needs a curve",
+                                       .unit = "stops",
                                        .range = Range{-6, 6},
                                        .applies = self.curve != ToneCurve::None});
         visit(self.white, FieldInfo{.key = "white",
-                                    .unit = "",
                                     .doc = "Brightness that becomes white (Reinhard)",
                                     .range = Range{1, 20},
                                     .logScale = true,

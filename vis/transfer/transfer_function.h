@@ -20,9 +20,8 @@ struct ColorStop {
     bool operator==(const ColorStop&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.position,
-              FieldInfo{.key = "position", .unit = "", .doc = "Position along the colour map", .range = Range{0, 1}});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour at the position (sRGB)", .range = Range{0, 1}});
+              FieldInfo{.key = "position", .doc = "Position along the colour map", .range = Range{0, 1}});
+        visit(self.color, FieldInfo{.key = "color", .doc = "Colour at the position (sRGB)", .range = Range{0, 1}});
     }
 };
 
@@ -41,23 +40,17 @@ struct TransferRegion {
     glm::vec3 color{0.95f, 0.75f, 0.35f};
     bool operator==(const TransferRegion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.shape,
-              FieldInfo{.key = "shape", .unit = "", .doc = "Shape of the region", .names = kRegionShapeNames});
+        visit(self.shape, FieldInfo{.key = "shape", .doc = "Shape of the region", .names = kRegionShapeNames});
         visit(self.centre, FieldInfo{.key = "centre",
-                                     .unit = "",
                                      .doc = "Centre: value and gradient magnitude, both 0 to 1",
                                      .range = Range{-1, 2}});
-        visit(self.size, FieldInfo{.key = "size", .unit = "", .doc = "Width and height", .range = Range{0.001, 4}});
+        visit(self.size, FieldInfo{.key = "size", .doc = "Width and height", .range = Range{0.001, 4}});
         visit(self.soft, FieldInfo{.key = "soft",
-                                   .unit = "",
                                    .doc = "Share of the half width over which the opacity falls to 0",
                                    .range = Range{0, 1}});
-        visit(self.opacity, FieldInfo{.key = "opacity", .unit = "", .doc = "Greatest opacity", .range = Range{0, 1}});
-        visit(
-            self.ownColor,
-            FieldInfo{.key = "ownColor", .unit = "", .doc = "Use the colour of the region instead of the colour map"});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour of the region (sRGB)", .range = Range{0, 1}});
+        visit(self.opacity, FieldInfo{.key = "opacity", .doc = "Greatest opacity", .range = Range{0, 1}});
+        visit(self.ownColor, FieldInfo{"ownColor", "Use the colour of the region instead of the colour map"});
+        visit(self.color, FieldInfo{.key = "color", .doc = "Colour of the region (sRGB)", .range = Range{0, 1}});
     }
 };
 
@@ -85,39 +78,32 @@ struct TransferFunction {
 
     bool operator==(const TransferFunction&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.colormap, FieldInfo{.key = "colormap", .unit = "", .doc = "Colour map", .refersTo = "colormap"});
-        visit(self.reversed, FieldInfo{.key = "reversed", .unit = "", .doc = "Reverse the colour map"});
-        visit(self.autoRange,
-              FieldInfo{.key = "autoRange", .unit = "", .doc = "Use the range of the parameter over all times"});
+        visit(self.colormap, FieldInfo{.key = "colormap", .doc = "Colour map", .refersTo = "colormap"});
+        visit(self.reversed, FieldInfo{"reversed", "Reverse the colour map"});
+        visit(self.autoRange, FieldInfo{"autoRange", "Use the range of the parameter over all times"});
         visit(self.aboutZero, FieldInfo{.key = "aboutZero",
-                                        .unit = "",
                                         .doc = "Make the automatic range symmetric around 0",
                                         .applies = self.autoRange});
-        visit(self.range, FieldInfo{.key = "range", .unit = "", .doc = "Values at the ends of the colour map"});
+        visit(self.range, FieldInfo{"range", "Values at the ends of the colour map"});
         visit(self.opacity,
-              FieldInfo{
-                  .key = "opacity", .unit = "", .doc = "Opacity curve: (position 0..1, opacity 0..1)", .hidden = true});
+              FieldInfo{.key = "opacity", .doc = "Opacity curve: (position 0..1, opacity 0..1)", .hidden = true});
         visit(self.colors, FieldInfo{.key = "colors",
-                                     .unit = "",
                                      .doc = "User-defined colours along the range, instead of the colour map",
                                      .hidden = true});
         visit(self.kind,
               FieldInfo{.key = "kind",
-                        .unit = "",
                         .doc = "Source of opacity: the curve over values, or regions of value and gradient magnitude",
                         .names = kTransferKindNames});
         visit(self.regions, FieldInfo{.key = "regions",
-                                      .unit = "",
                                       .doc = "Regions of value and gradient magnitude that have opacity",
                                       .hidden = true});
         visit(self.gradientTop, FieldInfo{.key = "gradientTop",
-                                          .unit = "ranges/cell",
                                           .doc = "Gradient magnitude at the top of the plane of regions and, where the "
                                                  "gradient is shown, at the end of the colour map",
+                                          .unit = "ranges/cell",
                                           .range = Range{1e-4, 2},
                                           .logScale = true});
         visit(self.emphasis, FieldInfo{.key = "emphasis",
-                                       .unit = "",
                                        .doc = "Opacity by distance from a boundary: (position 0..1 for -2..2 standard "
                                               "deviations of its blur, opacity 0..1)",
                                        .hidden = true});

@@ -22,16 +22,14 @@ struct RecipePlace {
     static void describe(auto& self, auto&& visit) {
         visit(self.place,
               FieldInfo{.key = "place",
-                        .unit = "",
                         .doc = "Quantile of the values above the background; below 0: within the background",
                         .range = Range{-1, 1}});
         visit(self.share, FieldInfo{.key = "share",
-                                    .unit = "",
                                     .doc = "Share of the range, where it is at this quantile",
                                     .range = Range{-1e6, 1e6}});
         visit(self.hounsfield, FieldInfo{.key = "hounsfield",
-                                         .unit = "HU",
                                          .doc = "Value in scans that state Hounsfield units",
+                                         .unit = "HU",
                                          .range = Range{-1e5, 1e5}});
     }
 };
@@ -41,9 +39,8 @@ struct RecipePoint {
     float opacity = 0;
     bool operator==(const RecipePoint&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.at, FieldInfo{.key = "at", .unit = "", .doc = "Value"});
-        visit(self.opacity,
-              FieldInfo{.key = "opacity", .unit = "", .doc = "Opacity at the value", .range = Range{0, 1}});
+        visit(self.at, FieldInfo{"at", "Value"});
+        visit(self.opacity, FieldInfo{.key = "opacity", .doc = "Opacity at the value", .range = Range{0, 1}});
     }
 };
 
@@ -52,9 +49,8 @@ struct RecipeColor {
     glm::vec3 color{1}; ///< sRGB
     bool operator==(const RecipeColor&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.at, FieldInfo{.key = "at", .unit = "", .doc = "Value"});
-        visit(self.color,
-              FieldInfo{.key = "color", .unit = "", .doc = "Colour at the value (sRGB)", .range = Range{0, 1}});
+        visit(self.at, FieldInfo{"at", "Value"});
+        visit(self.color, FieldInfo{.key = "color", .doc = "Colour at the value (sRGB)", .range = Range{0, 1}});
     }
 };
 
@@ -63,8 +59,8 @@ struct RecipeRange {
     RecipePlace lo, hi;
     bool operator==(const RecipeRange&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.lo, FieldInfo{.key = "lo", .unit = "", .doc = "Value at the lower end of the colours"});
-        visit(self.hi, FieldInfo{.key = "hi", .unit = "", .doc = "Value at the upper end of the colours"});
+        visit(self.lo, FieldInfo{"lo", "Value at the lower end of the colours"});
+        visit(self.hi, FieldInfo{"hi", "Value at the upper end of the colours"});
     }
 };
 
@@ -84,23 +80,22 @@ struct TransferRecipe {
     std::vector<glm::vec2> emphasis = TransferFunction{}.emphasis;
     bool operator==(const TransferRecipe&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name in the library"});
-        visit(self.help, FieldInfo{.key = "help", .unit = "", .doc = "What it shows"});
-        visit(self.scan, FieldInfo{.key = "scan", .unit = "", .doc = "For scans rather than computed fields"});
-        visit(self.aboutZero, FieldInfo{.key = "aboutZero", .unit = "", .doc = "For signed values, symmetric about 0"});
-        visit(self.colormap, FieldInfo{.key = "colormap", .unit = "", .doc = "Colour map", .refersTo = "colormap"});
-        visit(self.reversed, FieldInfo{.key = "reversed", .unit = "", .doc = "Reverse the colour map"});
-        visit(self.opacity, FieldInfo{.key = "opacity", .unit = "", .doc = "Points of the opacity curve"});
-        visit(self.colors, FieldInfo{.key = "colors", .unit = "", .doc = "Colours, instead of the colour map"});
-        visit(self.range,
-              FieldInfo{.key = "range", .unit = "", .doc = "Ends of the colours; without: those of the data"});
-        visit(self.kind, FieldInfo{.key = "kind", .unit = "", .doc = "Source of opacity", .names = kTransferKindNames});
-        visit(self.regions, FieldInfo{.key = "regions", .unit = "", .doc = "Regions of value and gradient magnitude"});
+        visit(self.name, FieldInfo{"name", "Name in the library"});
+        visit(self.help, FieldInfo{"help", "What it shows"});
+        visit(self.scan, FieldInfo{"scan", "For scans rather than computed fields"});
+        visit(self.aboutZero, FieldInfo{"aboutZero", "For signed values, symmetric about 0"});
+        visit(self.colormap, FieldInfo{.key = "colormap", .doc = "Colour map", .refersTo = "colormap"});
+        visit(self.reversed, FieldInfo{"reversed", "Reverse the colour map"});
+        visit(self.opacity, FieldInfo{"opacity", "Points of the opacity curve"});
+        visit(self.colors, FieldInfo{"colors", "Colours, instead of the colour map"});
+        visit(self.range, FieldInfo{"range", "Ends of the colours; without: those of the data"});
+        visit(self.kind, FieldInfo{.key = "kind", .doc = "Source of opacity", .names = kTransferKindNames});
+        visit(self.regions, FieldInfo{"regions", "Regions of value and gradient magnitude"});
         visit(self.gradientTop, FieldInfo{.key = "gradientTop",
-                                          .unit = "ranges/cell",
                                           .doc = "Gradient magnitude at the top of the plane of regions",
+                                          .unit = "ranges/cell",
                                           .range = Range{1e-4, 2}});
-        visit(self.emphasis, FieldInfo{.key = "emphasis", .unit = "", .doc = "Emphasis of boundaries"});
+        visit(self.emphasis, FieldInfo{"emphasis", "Emphasis of boundaries"});
     }
 };
 

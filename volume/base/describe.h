@@ -11,7 +11,7 @@
 ///         double value = 0.5;
 ///         bool operator==(const IsoLayer&) const = default;
 ///         static void describe(auto& self, auto&& visit) {
-///             visit(self.value, {.key = "value", .unit = "", .doc = "Value at which the surface lies"});
+///             visit(self.value, {"value", "Value at which the surface lies"});
 ///         }
 ///     };
 ///
@@ -27,9 +27,9 @@ struct Range {
 };
 
 struct FieldInfo {
-    std::string_view key;  ///< JSON key and option name, lower camel case, never reused
-    std::string_view unit; ///< "" where there is none
-    std::string_view doc;  ///< one line of help
+    std::string_view key;       ///< JSON key and option name, lower camel case, never reused
+    std::string_view doc = {};  ///< one line of help
+    std::string_view unit = {}; ///< "" where there is none
     std::optional<Range> range = {};
     std::span<const std::string_view> names = {}; ///< enumerators in order
     bool logScale = false;

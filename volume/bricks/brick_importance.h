@@ -24,14 +24,12 @@ struct ImportanceOptions {
     static void describe(auto& self, auto&& visit) {
         visit(self.borderWeight,
               FieldInfo{.key = "borderWeight",
-                        .unit = "",
                         .doc = "Weight of the samples at the faces of a brick; those inside have weight 1",
                         .range = Range{1, 16}});
         visit(
             self.neighbours,
             FieldInfo{
                 .key = "neighbours",
-                .unit = "",
                 .doc = "Share of the difference to its most important neighbour that is added to a brick's importance",
                 .range = Range{0, 1}});
     }

@@ -28,19 +28,18 @@ struct MergeOptions {
     bool operator==(const MergeOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.discardBelow, FieldInfo{.key = "discardBelow",
-                                           .unit = "importance",
                                            .doc = "Omit bricks less important than this; 0 = none",
+                                           .unit = "importance",
                                            .range = Range{0, 1}});
         visit(self.alike, FieldInfo{.key = "alike",
-                                    .unit = "importance",
                                     .doc = "Largest difference in importance between bricks that are merged",
+                                    .unit = "importance",
                                     .range = Range{0, 1}});
         visit(self.mostBricks, FieldInfo{.key = "mostBricks",
-                                         .unit = "bricks",
                                          .doc = "Edge of the largest merged brick",
+                                         .unit = "bricks",
                                          .range = Range{1, 64}});
         visit(self.shape, FieldInfo{.key = "shape",
-                                    .unit = "",
                                     .doc = "Shape of merged bricks: cubes (uniform), boxes grown along x, then y, then "
                                            "z (mixed), boxes grown in any direction (best)",
                                     .names = kMergeShapeNames});

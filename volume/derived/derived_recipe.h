@@ -40,10 +40,8 @@ struct ExpressionRecipe {
     static void describe(auto& self, auto&& visit) {
         visit(
             self.formula,
-            FieldInfo{
-                .key = "formula",
-                .unit = "",
-                .doc = "Formula of parameters, the position x y z and the time t, e.g. O2/(O2+H2O), T - at(T, first)"});
+            FieldInfo{"formula",
+                      "Formula of parameters, the position x y z and the time t, e.g. O2/(O2+H2O), T - at(T, first)"});
     }
 };
 
@@ -58,14 +56,13 @@ struct MagnitudeRecipe {
     std::string x, y, z;
     bool operator==(const MagnitudeRecipe&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.x, FieldInfo{.key = "x", .unit = "", .doc = "First component", .refersTo = "channel"});
-        visit(self.y, FieldInfo{.key = "y", .unit = "", .doc = "Second component", .refersTo = "channel"});
-        visit(self.z, FieldInfo{.key = "z", .unit = "", .doc = "Third component", .refersTo = "channel"});
+        visit(self.x, FieldInfo{.key = "x", .doc = "First component", .refersTo = "channel"});
+        visit(self.y, FieldInfo{.key = "y", .doc = "Second component", .refersTo = "channel"});
+        visit(self.z, FieldInfo{.key = "z", .doc = "Third component", .refersTo = "channel"});
     }
 };
 
-inline constexpr FieldInfo kDerivedFrom{
-    .key = "channel", .unit = "", .doc = "Parameter to compute from", .refersTo = "channel"};
+inline constexpr FieldInfo kDerivedFrom{.key = "channel", .doc = "Parameter to compute from", .refersTo = "channel"};
 
 /// A vector, with magnitude: central differences within each sublattice, one-sided beside absent samples and borders.
 struct GradientRecipe {
@@ -81,8 +78,7 @@ struct GradientRecipe {
     static void describe(auto& self, auto&& visit) { visit(self.channel, kDerivedFrom); }
 };
 
-inline constexpr FieldInfo kDerivedVector{
-    .key = "vector", .unit = "", .doc = "Vector to compute from", .refersTo = "vector"};
+inline constexpr FieldInfo kDerivedVector{.key = "vector", .doc = "Vector to compute from", .refersTo = "vector"};
 
 struct DivergenceRecipe {
     static constexpr std::string_view kType = "divergence";
@@ -126,7 +122,6 @@ struct DeviationRecipe {
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, kDerivedFrom);
         visit(self.measure, FieldInfo{.key = "measure",
-                                      .unit = "",
                                       .doc = "Difference from the mean over time, or the standard deviation",
                                       .names = kTimeMeasureNames});
     }
@@ -145,8 +140,8 @@ struct SmoothRecipe {
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, kDerivedFrom);
         visit(self.width, FieldInfo{.key = "width",
-                                    .unit = "cell",
                                     .doc = "Standard deviation of the Gaussian",
+                                    .unit = "cell",
                                     .range = Range{0.1, 16},
                                     .logScale = true});
     }
@@ -189,13 +184,11 @@ struct DifferenceRecipe {
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, kDerivedFrom);
         visit(self.from, FieldInfo{.key = "from",
-                                   .unit = "",
                                    .doc = "What to subtract: the values at the first, last, previous, next or a stated "
                                           "time, or those of the other data set",
                                    .names = kOtherTimeNames});
         visit(self.time,
               FieldInfo{.key = "time",
-                        .unit = "",
                         .doc = "Stated time, in the unit of the times of the data; interpolated between stored times",
                         .applies = self.from == OtherTime::Time});
     }
@@ -227,9 +220,9 @@ struct DerivedParameter {
     DerivedRecipe recipe;
     bool operator==(const DerivedParameter&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Name of the derived parameter"});
-        visit(self.unit, FieldInfo{.key = "unit", .unit = "", .doc = "Unit of its values"});
-        visit(self.recipe, FieldInfo{.key = "recipe", .unit = "", .doc = "How the parameter is computed"});
+        visit(self.name, FieldInfo{"name", "Name of the derived parameter"});
+        visit(self.unit, FieldInfo{"unit", "Unit of its values"});
+        visit(self.recipe, FieldInfo{"recipe", "How the parameter is computed"});
     }
 };
 

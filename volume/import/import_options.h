@@ -42,31 +42,23 @@ struct ImportOptions {
     bool operator==(const ImportOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.gridSize, FieldInfo{.key = "gridSize",
-                                       .unit = "",
                                        .doc = "Grid that meshes are resampled to; 0 = chosen by the number of cells",
                                        .range = Range{0, 4096}});
-        visit(self.raw, FieldInfo{.key = "raw", .unit = "", .doc = "Layout of a raw file: dims=..,type=..,..."});
-        visit(self.absent, FieldInfo{.key = "absent", .unit = "", .doc = "Rules for absent samples: O2=region:0,3"});
-        visit(self.rename,
-              FieldInfo{.key = "rename", .unit = "", .doc = "New parameter names, by the names in the file"});
-        visit(self.units, FieldInfo{.key = "units", .unit = "", .doc = "Units by parameter"});
-        visit(self.lengthUnit, FieldInfo{.key = "lengthUnit", .unit = "", .doc = "Unit of length of the file"});
-        visit(self.times, FieldInfo{.key = "times", .unit = "", .doc = "Times of a series"});
-        visit(self.parameters,
-              FieldInfo{.key = "parameters", .unit = "", .doc = "Parameters that are read; empty = all"});
-        visit(self.autoAbsent,
-              FieldInfo{.key = "autoAbsent", .unit = "", .doc = "Find absent samples by a label such as region"});
-        visit(self.labels, FieldInfo{.key = "labels",
-                                     .unit = "",
-                                     .doc = "Names and colours of label values: region:0=cathode,1=anode#e07b39"});
+        visit(self.raw, FieldInfo{"raw", "Layout of a raw file: dims=..,type=..,..."});
+        visit(self.absent, FieldInfo{"absent", "Rules for absent samples: O2=region:0,3"});
+        visit(self.rename, FieldInfo{"rename", "New parameter names, by the names in the file"});
+        visit(self.units, FieldInfo{"units", "Units by parameter"});
+        visit(self.lengthUnit, FieldInfo{"lengthUnit", "Unit of length of the file"});
+        visit(self.times, FieldInfo{"times", "Times of a series"});
+        visit(self.parameters, FieldInfo{"parameters", "Parameters that are read; empty = all"});
+        visit(self.autoAbsent, FieldInfo{"autoAbsent", "Find absent samples by a label such as region"});
+        visit(self.labels, FieldInfo{"labels", "Names and colours of label values: region:0=cathode,1=anode#e07b39"});
         visit(self.parts,
-              FieldInfo{
-                  .key = "parts",
-                  .unit = "",
-                  .doc = "Regions between which a parameter is never interpolated: p=region:1|3, T=joined, p=jumps"});
-        visit(self.timeName, FieldInfo{.key = "timeName", .unit = "", .doc = "What the times of a series count"});
-        visit(self.timeUnit, FieldInfo{.key = "timeUnit", .unit = "", .doc = "Unit of the times of a series"});
-        visit(self.overTime, FieldInfo{.key = "overTime", .unit = "", .doc = "CSV file with quantities over time"});
+              FieldInfo{"parts",
+                        "Regions between which a parameter is never interpolated: p=region:1|3, T=joined, p=jumps"});
+        visit(self.timeName, FieldInfo{"timeName", "What the times of a series count"});
+        visit(self.timeUnit, FieldInfo{"timeUnit", "Unit of the times of a series"});
+        visit(self.overTime, FieldInfo{"overTime", "CSV file with quantities over time"});
     }
 };
 

@@ -30,26 +30,21 @@ struct ResampleOptions {
     bool operator==(const ResampleOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.filter, FieldInfo{.key = "filter",
-                                     .unit = "",
                                      .doc = "Filter for resampling a regular grid; labels take the nearest sample",
                                      .names = kResampleFilterNames});
         visit(self.order,
               FieldInfo{.key = "order",
-                        .unit = "",
                         .doc = "For lagrange: degree of the polynomial; for sinc: number of samples on either side",
                         .range = Range{kLeastOrder, kMostOrder}});
         visit(
             self.sharpen,
             FieldInfo{
                 .key = "sharpen",
-                .unit = "",
                 .doc =
                     "Sharpening: share of the difference to the mean of the nearest neighbours that is added; 0 = none",
                 .range = Range{0, 4}});
-        visit(self.sharpenWhen, FieldInfo{.key = "sharpenWhen",
-                                          .unit = "",
-                                          .doc = "Sharpen the source or the result",
-                                          .names = kSharpenWhenNames});
+        visit(self.sharpenWhen,
+              FieldInfo{.key = "sharpenWhen", .doc = "Sharpen the source or the result", .names = kSharpenWhenNames});
     }
 };
 

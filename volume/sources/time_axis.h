@@ -14,10 +14,8 @@ struct TimeAxis {
     double place = 0.5;
     bool operator==(const TimeAxis&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.axis,
-              FieldInfo{.key = "axis", .unit = "", .doc = "Axis along which time is shown", .names = kSpaceAxisNames});
+        visit(self.axis, FieldInfo{.key = "axis", .doc = "Axis along which time is shown", .names = kSpaceAxisNames});
         visit(self.place, FieldInfo{.key = "place",
-                                    .unit = "",
                                     .doc = "Position of the plane along that axis, as a share of its length",
                                     .range = Range{0, 1}});
     }

@@ -27,11 +27,10 @@ struct CastingSettings {
 
     static void describe(auto& self, auto&& visit) {
         const Range edge{8, 4096};
-        visit(self.nx, FieldInfo{.key = "nx", .unit = "", .doc = "Samples along x", .range = edge});
-        visit(self.ny, FieldInfo{.key = "ny", .unit = "", .doc = "Samples along y", .range = edge});
-        visit(self.nz, FieldInfo{.key = "nz", .unit = "", .doc = "Samples along z", .range = edge});
+        visit(self.nx, FieldInfo{.key = "nx", .doc = "Samples along x", .range = edge});
+        visit(self.ny, FieldInfo{.key = "ny", .doc = "Samples along y", .range = edge});
+        visit(self.nz, FieldInfo{.key = "nz", .doc = "Samples along z", .range = edge});
         visit(self.noise, FieldInfo{.key = "noise",
-                                    .unit = "",
                                     .doc = "Largest noise in a sample, of 255; the same in each run",
                                     .range = Range{0, 50}});
     }

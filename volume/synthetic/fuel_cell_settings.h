@@ -29,59 +29,53 @@ struct FuelCellSettings {
     bool operator==(const FuelCellSettings&) const = default;
 
     static void describe(auto& self, auto&& visit) {
-        visit(self.nx, {.key = "nx", .unit = "", .doc = "Samples across the channel", .range = Range{3, 250}});
-        visit(self.ny, {.key = "ny", .unit = "", .doc = "Samples through the layers", .range = Range{5, 250}});
-        visit(self.nz, {.key = "nz", .unit = "", .doc = "Samples along the flow", .range = Range{4, 1000}});
-        visit(self.times, {.key = "times", .unit = "", .doc = "Number of times stored", .range = Range{1, 10000}});
+        visit(self.nx, {.key = "nx", .doc = "Samples across the channel", .range = Range{3, 250}});
+        visit(self.ny, {.key = "ny", .doc = "Samples through the layers", .range = Range{5, 250}});
+        visit(self.nz, {.key = "nz", .doc = "Samples along the flow", .range = Range{4, 1000}});
+        visit(self.times, {.key = "times", .doc = "Number of times stored", .range = Range{1, 10000}});
         visit(self.interval,
-              {.key = "interval", .unit = "s", .doc = "Time between two stored times", .range = Range{1e-5, 1e4}});
+              {.key = "interval", .doc = "Time between two stored times", .unit = "s", .range = Range{1e-5, 1e4}});
         visit(self.stepTime, {.key = "stepTime",
-                              .unit = "s",
                               .doc = "Time at which the cell voltage falls; the cell is steady before",
+                              .unit = "s",
                               .range = Range{0, 1e8}});
         visit(self.voltageBefore, {.key = "voltageBefore",
-                                   .unit = "V",
                                    .doc = "Cell voltage before the load step",
+                                   .unit = "V",
                                    .range = Range{0.4, 1.0}});
         visit(
             self.voltageAfter,
-            {.key = "voltageAfter", .unit = "V", .doc = "Cell voltage after the load step", .range = Range{0.4, 1.0}});
+            {.key = "voltageAfter", .doc = "Cell voltage after the load step", .unit = "V", .range = Range{0.4, 1.0}});
         visit(self.airStoichiometry, {.key = "airStoichiometry",
-                                      .unit = "",
                                       .doc = "Oxygen fed / oxygen consumed at the rated current",
                                       .range = Range{1.5, 20}});
         visit(self.hydrogenStoichiometry, {.key = "hydrogenStoichiometry",
-                                           .unit = "",
                                            .doc = "Hydrogen fed / hydrogen consumed at the rated current",
                                            .range = Range{1.2, 20}});
         visit(self.ratedCurrent, {.key = "ratedCurrent",
-                                  .unit = "A/m2",
                                   .doc = "Current density for which the gas flows are chosen",
+                                  .unit = "A/m2",
                                   .range = Range{1e3, 3e4}});
         visit(self.airHumidity, {.key = "airHumidity",
-                                 .unit = "",
                                  .doc = "Relative humidity of the air at coolant temperature",
                                  .range = Range{0.05, 0.9}});
         visit(self.fuelHumidity, {.key = "fuelHumidity",
-                                  .unit = "",
                                   .doc = "Relative humidity of the hydrogen at coolant temperature",
                                   .range = Range{0.05, 0.9}});
         visit(self.coolantTemperature, {.key = "coolantTemperature",
-                                        .unit = "K",
                                         .doc = "Temperature of the cooled plates behind the lands",
+                                        .unit = "K",
                                         .range = Range{323.15, 363.15}});
         visit(self.inletTemperature, {.key = "inletTemperature",
-                                      .unit = "K",
                                       .doc = "Temperature of both gases at their inlets",
+                                      .unit = "K",
                                       .range = Range{303.15, 363.15}});
         visit(self.outletPressure,
-              {.key = "outletPressure", .unit = "Pa", .doc = "Pressure at both outlets", .range = Range{9e4, 3e5}});
+              {.key = "outletPressure", .doc = "Pressure at both outlets", .unit = "Pa", .range = Range{9e4, 3e5}});
         visit(self.dragFactor, {.key = "dragFactor",
-                                .unit = "",
                                 .doc = "Factor on the electro-osmotic drag of water; 0 = none",
                                 .range = Range{0, 2}});
         visit(self.backDiffusionFactor, {.key = "backDiffusionFactor",
-                                         .unit = "",
                                          .doc = "Factor on the diffusion of water through the membrane; 0 = none",
                                          .range = Range{0, 4}});
     }

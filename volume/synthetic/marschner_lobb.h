@@ -32,19 +32,16 @@ struct MarschnerLobbSettings {
 
     static void describe(auto& self, auto&& visit) {
         const Range edge{2, 8192};
-        visit(self.nx, FieldInfo{.key = "nx", .unit = "", .doc = "Samples along x", .range = edge});
-        visit(self.ny, FieldInfo{.key = "ny", .unit = "", .doc = "Samples along y", .range = edge});
-        visit(self.nz, FieldInfo{.key = "nz", .unit = "", .doc = "Samples along z", .range = edge});
+        visit(self.nx, FieldInfo{.key = "nx", .doc = "Samples along x", .range = edge});
+        visit(self.ny, FieldInfo{.key = "ny", .doc = "Samples along y", .range = edge});
+        visit(self.nz, FieldInfo{.key = "nz", .doc = "Samples along z", .range = edge});
         visit(self.times,
               FieldInfo{.key = "times",
-                        .unit = "",
                         .doc = "Number of times, from 0 to 1 s, in which the phase of the rings goes round once",
                         .range = Range{1, 100000}});
-        visit(self.alpha,
-              FieldInfo{.key = "alpha", .unit = "", .doc = "Amplitude of the rings", .range = Range{0, 100}});
-        visit(self.fM, FieldInfo{.key = "fM", .unit = "", .doc = "Frequency of the rings", .range = Range{0, 1000}});
+        visit(self.alpha, FieldInfo{.key = "alpha", .doc = "Amplitude of the rings", .range = Range{0, 100}});
+        visit(self.fM, FieldInfo{.key = "fM", .doc = "Frequency of the rings", .range = Range{0, 1000}});
         visit(self.bits, FieldInfo{.key = "bits",
-                                   .unit = "",
                                    .doc = "Bits of a sample; 8 or 16: unsigned integers with a scale, 32: float",
                                    .range = Range{8, 32}});
     }

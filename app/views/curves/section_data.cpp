@@ -216,11 +216,6 @@ Table sectionTable(const volume::DatasetInfo& info, const SectionCurves& curves)
     return table;
 }
 
-std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& curves, bool head) {
-    const std::string csv = csvOf(sectionTable(info, curves));
-    return head ? csv : csv.substr(csv.find('\n') + 1);
-}
-
 std::vector<Plot> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves, SectionMeasure measure) {
     const auto& [asked, sections, velocity, errors] = curves;
     if (velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))

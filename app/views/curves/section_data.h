@@ -75,8 +75,6 @@ std::string placeTitle(const SectionCurvesQuery& query);
 
 /// A row for each region, parameter (where the region has it) and plane, with every measure.
 Table sectionTable(const volume::DatasetInfo& info, const SectionCurves& curves);
-/// The same as CSV; `head` false leaves the first line out, as of further times.
-std::string sectionCsv(const volume::DatasetInfo& info, const SectionCurves& curves, bool head = true);
 /// A plot for each parameter, a line for each region.
 std::vector<Plot> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves, SectionMeasure measure);
 

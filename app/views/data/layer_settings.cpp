@@ -26,9 +26,8 @@ void drawOwnFunction(const WidgetContext& widgets, Session& session, vis::Layer&
     const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
     if (surface && surface->colorBy.empty()) return;
     bool own = !layer.transfer.empty();
-    const FieldInfo field{.key = "ownTransfer",
-                          .unit = "",
-                          .doc = "Use a separate transfer function for this layer, instead of that of its parameter"};
+    const FieldInfo field{"ownTransfer",
+                          "Use a separate transfer function for this layer, instead of that of its parameter"};
     if (!drawBool(widgets, field, own)) return;
     const std::string channel = channelOfFunction(layer.technique);
     setOwnFunction(session, layer.transfer, channel, own, channel + " in " + layerName(layer));

@@ -26,7 +26,6 @@ void drawCamera(Session& session, const std::string& pane, const WidgetContext& 
 void drawProportions(Session& session, const WidgetContext& widgets) {
     double stretch[] = {session.stretch.x, session.stretch.y, session.stretch.z};
     const FieldInfo field{.key = "stretch",
-                          .unit = "",
                           .doc = "Factor by which each axis is stretched; 1 = true proportions",
                           .range = Range{0.01, 1000},
                           .logScale = true};
@@ -36,7 +35,7 @@ void drawProportions(Session& session, const WidgetContext& widgets) {
 
 void drawPaper(Session& session, const WidgetContext& widgets) {
     bool paper = session.paper.has_value();
-    if (drawBool(widgets, {.key = "paper", .unit = "", .doc = "Draw on paper with the settings below"}, paper)) {
+    if (drawBool(widgets, {"paper", "Draw on paper with the settings below"}, paper)) {
         const std::optional<vis::Paper> shown = vis::paperOf(sceneOf(session));
         session.paper = paper ? std::optional(shown.value_or(vis::Paper{})) : std::nullopt;
     }
@@ -72,8 +71,7 @@ void drawContextSettings(ViewContext& context, const WidgetContext& widgets, con
 
 void drawClipSettings(ViewContext& context, const WidgetContext& widgets) {
     if (context.session.clips.empty()) faintText("No clips: the whole data are shown.");
-    drawDescribedList(widgets.at("/clips"),
-                      {.key = "clips", .unit = "", .doc = "Planes and bodies that cut the data open"},
+    drawDescribedList(widgets.at("/clips"), {"clips", "Planes and bodies that cut the data open"},
                       context.session.clips);
 }
 

@@ -19,10 +19,9 @@ void drawWall(Session& session, const WidgetContext& widgets, Wall& wall, std::s
         if (field.key != "transfer") return false;
         const auto channel = resolveChannel(*widgets.info, session, wall.channel);
         bool own = !wall.transfer.empty();
-        const FieldInfo ownField{.key = "ownTransfer",
-                                 .unit = "",
-                                 .doc = "Use a separate transfer function for this face, with colours and a range of "
-                                        "its own, instead of that of its parameter"};
+        const FieldInfo ownField{"ownTransfer",
+                                 "Use a separate transfer function for this face, with colours and a range of "
+                                 "its own, instead of that of its parameter"};
         if (!channel || !drawBool(widgets, ownField, own)) return true;
         const std::string name = widgets.info->channel(*channel).name;
         setOwnFunction(session, wall.transfer, name, own, kindName(wall.kind) + " " + name + ", " + faceName(face));

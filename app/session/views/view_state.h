@@ -23,20 +23,12 @@ struct TransferView {
     bool library = false;    ///< shows the library in place of an editor
     bool operator==(const TransferView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel, FieldInfo{.key = "channel",
-                                      .unit = "",
-                                      .doc = "Parameter whose transfer function is edited",
-                                      .refersTo = "channel"});
-        visit(self.logHistogram, FieldInfo{.key = "logHistogram", .unit = "", .doc = "Logarithmic counts"});
-        visit(self.visibility, FieldInfo{.key = "visibility",
-                                         .unit = "",
-                                         .doc = "Show which values contribute how much to the visible picture"});
-        visit(self.boundaries, FieldInfo{.key = "boundaries",
-                                         .unit = "",
-                                         .doc = "Compute the curve from boundaries, with an editable emphasis"});
-        visit(self.library, FieldInfo{.key = "library",
-                                      .unit = "",
-                                      .doc = "Show the library of transfer functions instead of an editor"});
+        visit(self.channel,
+              FieldInfo{.key = "channel", .doc = "Parameter whose transfer function is edited", .refersTo = "channel"});
+        visit(self.logHistogram, FieldInfo{"logHistogram", "Logarithmic counts"});
+        visit(self.visibility, FieldInfo{"visibility", "Show which values contribute how much to the visible picture"});
+        visit(self.boundaries, FieldInfo{"boundaries", "Compute the curve from boundaries, with an editable emphasis"});
+        visit(self.library, FieldInfo{"library", "Show the library of transfer functions instead of an editor"});
     }
 };
 DrawView<TransferView> drawTransferView;
@@ -53,19 +45,16 @@ struct LayersView {
     bool operator==(const LayersView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.selected, FieldInfo{.key = "selected",
-                                       .unit = "",
                                        .doc = "Layer whose settings are shown, counted from 0",
                                        .range = Range{0, 1000},
                                        .hidden = true});
         visit(self.task,
               FieldInfo{.key = "task",
-                        .unit = "",
                         .doc = "What is in front: the layers, the brushes, the lenses, the clips, the light, "
                                "or the rest of the picture",
                         .names = kSceneTaskNames,
                         .hidden = true});
         visit(self.next, FieldInfo{.key = "next",
-                                   .unit = "",
                                    .doc = "Entry of the list in front to unfold once it is drawn, counted from 0; "
                                           "-1 = none",
                                    .range = Range{-1, 1000},
@@ -79,8 +68,7 @@ struct TimelineView {
     bool always = false; ///< also where there is one time
     bool operator==(const TimelineView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.always,
-              FieldInfo{.key = "always", .unit = "", .doc = "Show it also for data with one time, without keyframes"});
+        visit(self.always, FieldInfo{"always", "Show it also for data with one time, without keyframes"});
     }
 };
 DrawView<TimelineView> drawTimelineView;

@@ -31,25 +31,17 @@ struct MeshOptions {
     int level = 0;
     bool bcc = false, allTimes = false;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel, FieldInfo{.key = "channel",
-                                      .unit = "",
-                                      .doc = "Parameter whose surface is extracted (default: the only one)"});
-        visit(self.iso, FieldInfo{.key = "iso", .unit = "", .doc = "Value on the surface, in the parameter's unit"});
-        visit(self.time,
-              FieldInfo{.key = "time", .unit = "", .doc = "Time, in the unit of the data (default: the first)"});
+        visit(self.channel, FieldInfo{"channel", "Parameter whose surface is extracted (default: the only one)"});
+        visit(self.iso, FieldInfo{"iso", "Value on the surface, in the parameter's unit"});
+        visit(self.time, FieldInfo{"time", "Time, in the unit of the data (default: the first)"});
         visit(self.allTimes,
-              FieldInfo{.key = "allTimes",
-                        .unit = "",
-                        .doc = "A file for every time, OUT_0000.vtp and so on, with .vtp also OUT.pvd; processes of "
-                               "mpirun or srun share the times"});
-        visit(self.colorBy,
-              FieldInfo{.key = "colorBy", .unit = "", .doc = "Parameter whose values are stored at the vertices"});
+              FieldInfo{"allTimes",
+                        "A file for every time, OUT_0000.vtp and so on, with .vtp also OUT.pvd; processes of "
+                        "mpirun or srun share the times"});
+        visit(self.colorBy, FieldInfo{"colorBy", "Parameter whose values are stored at the vertices"});
         visit(self.level,
-              FieldInfo{
-                  .key = "level", .unit = "", .doc = "Level of detail: 0 is full resolution", .range = Range{0, 16}});
-        visit(
-            self.bcc,
-            FieldInfo{.key = "bcc", .unit = "", .doc = "Resample data files to the body-centred cubic lattice first"});
+              FieldInfo{.key = "level", .doc = "Level of detail: 0 is full resolution", .range = Range{0, 16}});
+        visit(self.bcc, FieldInfo{"bcc", "Resample data files to the body-centred cubic lattice first"});
     }
 };
 

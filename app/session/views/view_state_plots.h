@@ -16,7 +16,7 @@
 namespace tessera::app {
 
 inline constexpr FieldInfo kShownChannels{
-    .key = "channels", .unit = "", .doc = "Parameters shown; empty: every scalar and magnitude", .refersTo = "channel"};
+    .key = "channels", .doc = "Parameters shown; empty: every scalar and magnitude", .refersTo = "channel"};
 
 /// What a drag in a plot makes.
 enum class BrushTool { Rectangle, Ellipse, Lasso };
@@ -35,28 +35,21 @@ struct ScatterMatrixView {
     std::vector<std::string> enlarged; ///< x and y of the plot that is shown large, equal for a histogram; empty = none
     bool operator==(const ScatterMatrixView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channels,
-              FieldInfo{.key = "channels", .unit = "", .doc = "Parameters compared", .refersTo = "channel"});
-        visit(self.bins,
-              FieldInfo{.key = "bins", .unit = "", .doc = "Bins along each axis of a plot", .range = Range{16, 512}});
-        visit(self.logDensity, FieldInfo{.key = "logDensity", .unit = "", .doc = "Logarithmic density"});
-        visit(self.tool, FieldInfo{.key = "tool", .unit = "", .doc = "Shape of new brushes", .names = kBrushToolNames});
+        visit(self.channels, FieldInfo{.key = "channels", .doc = "Parameters compared", .refersTo = "channel"});
+        visit(self.bins, FieldInfo{.key = "bins", .doc = "Bins along each axis of a plot", .range = Range{16, 512}});
+        visit(self.logDensity, FieldInfo{"logDensity", "Logarithmic density"});
+        visit(self.tool, FieldInfo{.key = "tool", .doc = "Shape of new brushes", .names = kBrushToolNames});
         visit(self.softness, FieldInfo{.key = "softness",
-                                       .unit = "",
                                        .doc = "Soft edge of new brushes, as a share of their width",
                                        .range = Range{0, 1}});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
-                                      .unit = "",
                                       .doc = "Parameter whose mean colours the plots; empty: colour by density",
                                       .refersTo = "optionalChannel"});
-        visit(self.outliers, FieldInfo{.key = "outliers", .unit = "", .doc = "Mark places with few samples"});
-        visit(self.zoom,
-              FieldInfo{.key = "zoom", .unit = "", .doc = "Visible range of values, by parameter", .hidden = true});
-        visit(self.enlarged, FieldInfo{.key = "enlarged",
-                                       .unit = "",
-                                       .doc = "Parameters of the enlarged plot",
-                                       .refersTo = "channel",
-                                       .hidden = true});
+        visit(self.outliers, FieldInfo{"outliers", "Mark places with few samples"});
+        visit(self.zoom, FieldInfo{.key = "zoom", .doc = "Visible range of values, by parameter", .hidden = true});
+        visit(self.enlarged,
+              FieldInfo{
+                  .key = "enlarged", .doc = "Parameters of the enlarged plot", .refersTo = "channel", .hidden = true});
     }
 };
 DrawView<ScatterMatrixView> drawScatterMatrixView;
@@ -72,13 +65,10 @@ struct StatisticsView {
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
         visit(self.correlateWith, FieldInfo{.key = "correlateWith",
-                                            .unit = "",
                                             .doc = "Parameter with which the correlation of the others is shown",
                                             .refersTo = "channel"});
-        visit(self.byRegion,
-              FieldInfo{.key = "byRegion", .unit = "", .doc = "Statistics of every region instead of the selection"});
+        visit(self.byRegion, FieldInfo{"byRegion", "Statistics of every region instead of the selection"});
         visit(self.balance, FieldInfo{.key = "balance",
-                                      .unit = "",
                                       .doc = "By region: inflow and outflow of this parameter instead of statistics",
                                       .refersTo = "optionalChannel"});
     }
@@ -93,11 +83,10 @@ struct HistogramView {
     float softness = 0.05f; ///< soft edge of new brushes, as a share of their width
     bool operator==(const HistogramView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
-        visit(self.bins, FieldInfo{.key = "bins", .unit = "", .doc = "Bins", .range = Range{8, 1024}});
-        visit(self.logCounts, FieldInfo{.key = "logCounts", .unit = "", .doc = "Logarithmic counts"});
+        visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.bins, FieldInfo{.key = "bins", .doc = "Bins", .range = Range{8, 1024}});
+        visit(self.logCounts, FieldInfo{"logCounts", "Logarithmic counts"});
         visit(self.softness, FieldInfo{.key = "softness",
-                                       .unit = "",
                                        .doc = "Soft edge of new brushes, as a share of their width",
                                        .range = Range{0, 1}});
     }
@@ -121,17 +110,15 @@ struct ProfileView {
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
         visit(self.over, FieldInfo{.key = "over",
-                                   .unit = "",
                                    .doc = "Values along the line, at the cross-hair over time, along the line at every "
                                           "time as colours, or averages over planes",
                                    .names = kProfileOverNames});
         visit(self.points, FieldInfo{.key = "points",
-                                     .unit = kUnitOfLengths,
-                                     .doc = "Corners of the line; empty: along the longest axis"});
+                                     .doc = "Corners of the line; empty: along the longest axis",
+                                     .unit = kUnitOfLengths});
         visit(self.samples,
-              FieldInfo{
-                  .key = "samples", .unit = "", .doc = "Number of points along the line", .range = Range{16, 4096}});
-        visit(self.sections, FieldInfo{.key = "sections", .unit = "", .doc = "Averages over planes"});
+              FieldInfo{.key = "samples", .doc = "Number of points along the line", .range = Range{16, 4096}});
+        visit(self.sections, FieldInfo{"sections", "Averages over planes"});
     }
 };
 DrawView<ProfileView> drawProfileView;
@@ -146,20 +133,13 @@ struct CurvesView {
     bool brushed = false; ///< and of what the brushes select
     bool operator==(const CurvesView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(
-            self.x,
-            FieldInfo{.key = "x",
-                      .unit = "",
-                      .doc = "Horizontal axis: time, a quantity over time, or a formula; empty: chosen by the curves"});
-        visit(self.y, FieldInfo{.key = "y",
-                                .unit = "",
-                                .doc = "Curves: quantities over time, mean(T), min(T), max(T), deviation(T), share(T), "
-                                       "volume(T), integral(T), or formulas of them; empty: the polarisation curve, "
-                                       "else every quantity, else a mean"});
-        visit(self.region, FieldInfo{.key = "region",
-                                     .unit = "",
-                                     .doc = "Region in which statistics are computed; empty: everywhere"});
-        visit(self.brushed, FieldInfo{.key = "brushed", .unit = "", .doc = "Compute statistics of the selection"});
+        visit(self.x,
+              FieldInfo{"x", "Horizontal axis: time, a quantity over time, or a formula; empty: chosen by the curves"});
+        visit(self.y, FieldInfo{"y", "Curves: quantities over time, mean(T), min(T), max(T), deviation(T), share(T), "
+                                     "volume(T), integral(T), or formulas of them; empty: the polarisation curve, "
+                                     "else every quantity, else a mean"});
+        visit(self.region, FieldInfo{"region", "Region in which statistics are computed; empty: everywhere"});
+        visit(self.brushed, FieldInfo{"brushed", "Compute statistics of the selection"});
     }
 };
 DrawView<CurvesView> drawCurvesView;
@@ -173,12 +153,9 @@ struct SliceMatrixView {
     bool operator==(const SliceMatrixView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
-        visit(self.axis, FieldInfo{.key = "axis",
-                                   .unit = "",
-                                   .doc = "Axis perpendicular to the planes",
-                                   .names = volume::kSpaceAxisNames});
-        visit(self.planes,
-              FieldInfo{.key = "planes", .unit = "", .doc = "Number of planes, evenly spaced", .range = Range{1, 12}});
+        visit(self.axis,
+              FieldInfo{.key = "axis", .doc = "Axis perpendicular to the planes", .names = volume::kSpaceAxisNames});
+        visit(self.planes, FieldInfo{.key = "planes", .doc = "Number of planes, evenly spaced", .range = Range{1, 12}});
     }
 };
 DrawView<SliceMatrixView> drawSliceMatrixView;
@@ -193,16 +170,14 @@ struct ObliqueView {
     bool showReadout = true;
     bool operator==(const ObliqueView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.normal, FieldInfo{.key = "normal",
-                                     .unit = "",
                                      .doc = "Normal of the plane through the cross-hair, in true proportions; the "
                                             "plane is seen from the side that it points to",
                                      .range = Range{-1, 1}});
         ContourSettings::describe(self.lines, visit);
-        visit(self.inSpace, FieldInfo{.key = "inSpace", .unit = "", .doc = "Draw the slice in the volume views too"});
-        visit(self.showReadout,
-              FieldInfo{.key = "readout", .unit = "", .doc = "List the value of every parameter at the cross-hair"});
+        visit(self.inSpace, FieldInfo{"inSpace", "Draw the slice in the volume views too"});
+        visit(self.showReadout, FieldInfo{"readout", "List the value of every parameter at the cross-hair"});
     }
 };
 DrawView<ObliqueView> drawObliqueView;

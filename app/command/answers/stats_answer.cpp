@@ -54,7 +54,7 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
     const SectionMeasure show = request.options.show;
     const SectionCurves curves =
         readSections(question.source, sectionCurvesQuery(request, question, time), progress, question.from);
-    answer.csv = sectionCsv(info, curves, first);
+    answer.csv = csvOf(sectionTable(info, curves), first);
     answer.notes = sectionNotes(info, curves);
     answer.panels = sectionPanels(info, curves, show);
     const std::vector<CurveLook> looks = curveLooks(info, curves.query);

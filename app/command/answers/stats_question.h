@@ -27,42 +27,27 @@ struct StatsOptions {
     bool json = false;
     bool planesAcross() const { return !along.empty() || !line.empty(); }
     static void describe(auto& self, auto&& visit) {
-        visit(self.time,
-              FieldInfo{.key = "time", .unit = "", .doc = "Time, in the unit of the data (default: the last)"});
-        visit(self.allTimes, FieldInfo{.key = "allTimes", .unit = "", .doc = "Every time instead of one"});
+        visit(self.time, FieldInfo{"time", "Time, in the unit of the data (default: the last)"});
+        visit(self.allTimes, FieldInfo{"allTimes", "Every time instead of one"});
         visit(self.by,
-              FieldInfo{.key = "by",
-                        .unit = "",
-                        .doc = "Label whose values are the regions, or none (default: the first label of the data)"});
-        visit(self.regions,
-              FieldInfo{.key = "regions", .unit = "", .doc = "Only these regions, by name or value: cathode,3"});
-        visit(self.of, FieldInfo{.key = "of", .unit = "", .doc = "Only these parameters: O2,H2O (default: all)"});
-        visit(self.along,
-              FieldInfo{.key = "along", .unit = "", .doc = "Averages over planes across an axis: x, y or z"});
-        visit(
-            self.line,
-            FieldInfo{
-                .key = "line",
-                .unit = "",
-                .doc = "Averages over planes across a line: x,y,z,x,y,z of its ends, in the length unit of the data"});
+              FieldInfo{"by", "Label whose values are the regions, or none (default: the first label of the data)"});
+        visit(self.regions, FieldInfo{"regions", "Only these regions, by name or value: cathode,3"});
+        visit(self.of, FieldInfo{"of", "Only these parameters: O2,H2O (default: all)"});
+        visit(self.along, FieldInfo{"along", "Averages over planes across an axis: x, y or z"});
+        visit(self.line,
+              FieldInfo{"line",
+                        "Averages over planes across a line: x,y,z,x,y,z of its ends, in the length unit of the data"});
         visit(self.planes,
-              FieldInfo{
-                  .key = "planes", .unit = "", .doc = "Number of planes across the line", .range = Range{1, 100000}});
-        visit(self.weight, FieldInfo{.key = "weight",
-                                     .unit = "",
-                                     .doc = "Weight of the mean over a plane",
-                                     .names = volume::kSectionWeightNames});
+              FieldInfo{.key = "planes", .doc = "Number of planes across the line", .range = Range{1, 100000}});
+        visit(
+            self.weight,
+            FieldInfo{.key = "weight", .doc = "Weight of the mean over a plane", .names = volume::kSectionWeightNames});
         visit(self.show, FieldInfo{.key = "show",
-                                   .unit = "",
                                    .doc = "Which result is printed and drawn (CSV has all of them)",
                                    .names = kSectionMeasureNames});
-        visit(self.balance, FieldInfo{.key = "balance",
-                                      .unit = "",
-                                      .doc = "How much of this parameter flows into and out of every region"});
-        visit(
-            self.velocity,
-            FieldInfo{.key = "velocity", .unit = "", .doc = "Velocity of the flow (default: found by name and unit)"});
-        visit(self.json, FieldInfo{.key = "json", .unit = "", .doc = "Print JSON with stable keys"});
+        visit(self.balance, FieldInfo{"balance", "How much of this parameter flows into and out of every region"});
+        visit(self.velocity, FieldInfo{"velocity", "Velocity of the flow (default: found by name and unit)"});
+        visit(self.json, FieldInfo{"json", "Print JSON with stable keys"});
     }
 };
 

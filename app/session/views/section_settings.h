@@ -27,20 +27,15 @@ struct SectionSettings {
     static void describe(auto& self, auto&& visit) {
         visit(self.across,
               FieldInfo{.key = "across",
-                        .unit = "",
                         .doc = "Axis perpendicular to the planes, or the line through the corners of the view",
                         .names = kSectionAcrossNames});
-        visit(self.weight, FieldInfo{.key = "weight",
-                                     .unit = "",
-                                     .doc = "Weight of the mean over a plane",
-                                     .names = volume::kSectionWeightNames});
-        visit(self.measure, FieldInfo{.key = "measure",
-                                      .unit = "",
-                                      .doc = "Quantity shown for every plane",
-                                      .names = kSectionMeasureNames});
-        visit(self.byRegion, FieldInfo{.key = "byRegion", .unit = "", .doc = "One curve for each region of the label"});
-        visit(self.regions,
-              FieldInfo{.key = "regions", .unit = "", .doc = "Values of the label that have a curve; empty: all"});
+        visit(
+            self.weight,
+            FieldInfo{.key = "weight", .doc = "Weight of the mean over a plane", .names = volume::kSectionWeightNames});
+        visit(self.measure,
+              FieldInfo{.key = "measure", .doc = "Quantity shown for every plane", .names = kSectionMeasureNames});
+        visit(self.byRegion, FieldInfo{"byRegion", "One curve for each region of the label"});
+        visit(self.regions, FieldInfo{"regions", "Values of the label that have a curve; empty: all"});
     }
 };
 

@@ -24,9 +24,8 @@ struct CompareVariant {
     std::map<std::string, std::string> changes; ///< JSON pointer into the session -> JSON, or text
     bool operator==(const CompareVariant&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.name, FieldInfo{.key = "name", .unit = "", .doc = "Title above the picture; empty: its changes"});
+        visit(self.name, FieldInfo{"name", "Title above the picture; empty: its changes"});
         visit(self.changes, FieldInfo{.key = "changes",
-                                      .unit = "",
                                       .doc = "Changed settings: the path in the session as for --set, and the value",
                                       .hidden = true});
     }
@@ -38,9 +37,9 @@ struct CompareQuestion {
     double seconds = 0; ///< from when it came on screen to the answer; 0 = not answered
     bool operator==(const CompareQuestion&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.text, FieldInfo{.key = "text", .unit = "", .doc = "The question"});
-        visit(self.answer, FieldInfo{.key = "answer", .unit = "", .doc = "The answer"});
-        visit(self.seconds, FieldInfo{.key = "seconds", .unit = "s", .doc = "Time taken to answer"});
+        visit(self.text, FieldInfo{"text", "The question"});
+        visit(self.answer, FieldInfo{"answer", "The answer"});
+        visit(self.seconds, FieldInfo{.key = "seconds", .doc = "Time taken to answer", .unit = "s"});
     }
 };
 
@@ -61,57 +60,47 @@ struct CompareView {
     bool operator==(const CompareView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.mode, FieldInfo{.key = "mode",
-                                   .unit = "",
                                    .doc = "Side by side (grid), on either side of a line (swipe), in turn in one place "
                                           "(blink), or the difference from the reference",
                                    .names = kCompareModeNames});
         visit(self.shows, FieldInfo{.key = "shows",
-                                    .unit = "",
                                     .doc = "Name of the view that is shown once for each variant, such as \"slices\"; "
                                            "empty: the 3D scene",
                                     .hidden = true});
-        visit(self.variants, FieldInfo{.key = "variants",
-                                       .unit = "",
-                                       .doc = "Variants of the session with changed settings",
-                                       .hidden = true});
+        visit(self.variants,
+              FieldInfo{.key = "variants", .doc = "Variants of the session with changed settings", .hidden = true});
         visit(self.reference, FieldInfo{.key = "reference",
-                                        .unit = "",
                                         .doc = "Variant that the others are compared with, counted from 0",
                                         .range = Range{0, 15},
                                         .hidden = true});
         visit(self.other, FieldInfo{.key = "other",
-                                    .unit = "",
                                     .doc = "Swipe: variant shown beside the reference, counted from 0",
                                     .range = Range{0, 15},
                                     .hidden = true});
         visit(self.swipe, FieldInfo{.key = "swipe",
-                                    .unit = "",
                                     .doc = "Swipe: position of the dividing line",
                                     .range = Range{0, 1},
                                     .applies = self.mode == CompareMode::Swipe});
         visit(self.blinkSeconds, FieldInfo{.key = "blinkSeconds",
-                                           .unit = "s",
                                            .doc = "How long each variant is shown",
+                                           .unit = "s",
                                            .range = Range{0.1, 10},
                                            .applies = self.mode == CompareMode::Blink});
         visit(self.differenceOf, FieldInfo{.key = "differenceOf",
-                                           .unit = "",
                                            .doc = "Difference of the colours of the pictures, or of the values of the "
                                                   "parameter of the first layer, on the planes through the cross-hair",
                                            .names = kDifferenceOfNames,
                                            .applies = self.mode == CompareMode::Difference});
         visit(self.differenceTop,
               FieldInfo{.key = "differenceTop",
-                        .unit = "of 255",
                         .doc = "Difference of colours that is drawn brightest; 0 = the largest that occurs",
+                        .unit = "of 255",
                         .range = Range{0, 255},
                         .applies = self.mode == CompareMode::Difference && self.differenceOf == DifferenceOf::Colors});
-        visit(self.showTable,
-              FieldInfo{.key = "table", .unit = "", .doc = "Show a table of changes, costs and errors"});
-        visit(self.questions, FieldInfo{.key = "questions",
-                                        .unit = "",
-                                        .doc = "Questions about the comparison, with their answers",
-                                        .hidden = true});
+        visit(self.showTable, FieldInfo{"table", "Show a table of changes, costs and errors"});
+        visit(
+            self.questions,
+            FieldInfo{.key = "questions", .doc = "Questions about the comparison, with their answers", .hidden = true});
     }
 };
 DrawView<CompareView> drawCompareView;

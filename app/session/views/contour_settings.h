@@ -16,16 +16,12 @@ struct ContourSettings {
     bool operator==(const ContourSettings&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.count,
-              FieldInfo{
-                  .key = "contours", .unit = "", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
+              FieldInfo{.key = "contours", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
         visit(self.channel,
               FieldInfo{.key = "contourOf",
-                        .unit = "",
                         .doc = "Parameter of the contour lines, drawn at round values; empty: the parameter shown",
                         .refersTo = "optionalChannel"});
-        visit(
-            self.values,
-            FieldInfo{.key = "contourValues", .unit = "", .doc = "Draw the lines at round values, labelled with them"});
+        visit(self.values, FieldInfo{"contourValues", "Draw the lines at round values, labelled with them"});
     }
 };
 

@@ -30,44 +30,33 @@ struct VolumeView {
     bool multiple = false;
     bool operator==(const VolumeView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.showBox, FieldInfo{.key = "box", .unit = "", .doc = "Draw the box around the data"});
-        visit(self.showAxes, FieldInfo{.key = "axes", .unit = "", .doc = "Draw axes with ticks and units"});
-        visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
+        visit(self.showBox, FieldInfo{"box", "Draw the box around the data"});
+        visit(self.showAxes, FieldInfo{"axes", "Draw axes with ticks and units"});
+        visit(self.showLegend, FieldInfo{"legend", "Draw colour legends"});
         visit(self.drawingLegend,
               FieldInfo{.key = "drawingLegend",
-                        .unit = "",
                         .doc = "Legends of layers drawn in charcoal or chalk too, although their colours are not shown",
                         .applies = self.showLegend});
         visit(self.drawingBox,
               FieldInfo{.key = "drawingBox",
-                        .unit = "",
                         .doc = "Box and cross-hair also where all layers are drawn on paper in charcoal, ink or chalk",
                         .applies = self.showBox || self.showCursor});
-        visit(self.showCursor, FieldInfo{.key = "cursor", .unit = "", .doc = "Draw the linked cross-hair"});
-        visit(self.showGizmo,
-              FieldInfo{.key = "gizmo", .unit = "", .doc = "Draw the axis triad; a click on an axis looks along it"});
-        visit(self.showScaleBar, FieldInfo{.key = "scaleBar", .unit = "", .doc = "Draw a scale bar"});
-        visit(self.showLenses,
-              FieldInfo{.key = "lenses", .unit = "", .doc = "Draw outlines of lenses and planes, and handles"});
+        visit(self.showCursor, FieldInfo{"cursor", "Draw the linked cross-hair"});
+        visit(self.showGizmo, FieldInfo{"gizmo", "Draw the axis triad; a click on an axis looks along it"});
+        visit(self.showScaleBar, FieldInfo{"scaleBar", "Draw a scale bar"});
+        visit(self.showLenses, FieldInfo{"lenses", "Draw outlines of lenses and planes, and handles"});
         visit(self.showLights, FieldInfo{.key = "lights",
-                                         .unit = "",
                                          .doc = "Draw lights as arrows and points that can be dragged",
                                          .applies = self.showLenses});
-        visit(self.inSpace, FieldInfo{.key = "inSpace",
-                                      .unit = "",
-                                      .doc = "With time along an axis: show the data in space, at the time of the "
-                                             "cross-hair, with the outline of the plane that is shown at all times"});
-        visit(self.camera, FieldInfo{.key = "camera",
-                                     .unit = "",
-                                     .doc = "Camera of this view alone; none: the one that all volume views share"});
-        visit(self.layers, FieldInfo{.key = "layers",
-                                     .unit = "",
-                                     .doc = "Layers of this view alone; none: those that all volume views share"});
+        visit(self.inSpace,
+              FieldInfo{"inSpace", "With time along an axis: show the data in space, at the time of the "
+                                   "cross-hair, with the outline of the plane that is shown at all times"});
+        visit(self.camera, FieldInfo{"camera", "Camera of this view alone; none: the one that all volume views share"});
+        visit(self.layers, FieldInfo{"layers", "Layers of this view alone; none: those that all volume views share"});
         visit(self.time, FieldInfo{.key = "time",
-                                   .unit = kUnitOfTimes,
-                                   .doc = "Time of this view alone; none: that of the session"});
+                                   .doc = "Time of this view alone; none: that of the session",
+                                   .unit = kUnitOfTimes});
         visit(self.multiple, FieldInfo{.key = "multiple",
-                                       .unit = "",
                                        .doc = "One of small multiples, which give way to the next ones",
                                        .hidden = true});
     }
@@ -81,10 +70,9 @@ struct SlicesView {
     bool showReadout = true;
     bool operator==(const SlicesView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
         ContourSettings::describe(self.lines, visit);
-        visit(self.showReadout,
-              FieldInfo{.key = "readout", .unit = "", .doc = "List the value of every parameter at the cross-hair"});
+        visit(self.showReadout, FieldInfo{"readout", "List the value of every parameter at the cross-hair"});
     }
 };
 DrawView<SlicesView> drawSlicesView;
@@ -99,16 +87,13 @@ struct Wall {
     std::string transfer = {}; ///< name of its own transfer function; "": that of its channel
     bool operator==(const Wall&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.kind, FieldInfo{.key = "kind",
-                                   .unit = "",
                                    .doc = "Projection along the axis: slice at the cross-hair, mean, maximum, "
                                           "absorption by the transfer function, or shadow of the selection",
                                    .names = kWallKindNames});
         visit(self.transfer,
-              FieldInfo{.key = "transfer",
-                        .unit = "",
-                        .doc = "Name of the transfer function of this face alone; empty: that of its parameter"});
+              FieldInfo{"transfer", "Name of the transfer function of this face alone; empty: that of its parameter"});
     }
 };
 
@@ -129,35 +114,27 @@ struct ShadowCubeView {
         return std::array{&self.left, &self.right, &self.bottom, &self.top, &self.back, &self.front};
     }
     static void describe(auto& self, auto&& visit) {
-        visit(self.left, FieldInfo{.key = "left", .unit = "", .doc = "Face at the lower end of x"});
-        visit(self.right, FieldInfo{.key = "right", .unit = "", .doc = "Face at the upper end of x"});
-        visit(self.bottom, FieldInfo{.key = "bottom", .unit = "", .doc = "Face at the lower end of y"});
-        visit(self.top, FieldInfo{.key = "top", .unit = "", .doc = "Face at the upper end of y"});
-        visit(self.back, FieldInfo{.key = "back", .unit = "", .doc = "Face at the lower end of z"});
-        visit(self.front, FieldInfo{.key = "front", .unit = "", .doc = "Face at the upper end of z"});
+        visit(self.left, FieldInfo{"left", "Face at the lower end of x"});
+        visit(self.right, FieldInfo{"right", "Face at the upper end of x"});
+        visit(self.bottom, FieldInfo{"bottom", "Face at the lower end of y"});
+        visit(self.top, FieldInfo{"top", "Face at the upper end of y"});
+        visit(self.back, FieldInfo{"back", "Face at the lower end of z"});
+        visit(self.front, FieldInfo{"front", "Face at the upper end of z"});
         visit(self.gap, FieldInfo{.key = "gap",
-                                  .unit = "",
                                   .doc = "Distance from the data to the faces; longest edge = 1",
                                   .range = Range{0, 1}});
         visit(self.zoom, FieldInfo{.key = "zoom",
-                                   .unit = "",
                                    .doc = "Magnification; at 1 the whole cube is in the picture",
                                    .range = Range{0.2, 10},
                                    .logScale = true});
-        visit(
-            self.target,
-            FieldInfo{.key = "target", .unit = "", .doc = "World point in the middle of the picture", .hidden = true});
-        visit(self.together,
-              FieldInfo{.key = "together", .unit = "", .doc = "Turn cube and data together; else each by itself"});
+        visit(self.target,
+              FieldInfo{.key = "target", .doc = "World point in the middle of the picture", .hidden = true});
+        visit(self.together, FieldInfo{"together", "Turn cube and data together; else each by itself"});
         visit(self.orientation, FieldInfo{.key = "orientation",
-                                          .unit = "",
                                           .doc = "Rotation of the cube while it is turned by itself",
                                           .hidden = true});
-        visit(self.showAxes,
-              FieldInfo{.key = "axes", .unit = "", .doc = "Draw axes with ticks and units at the edges of the cube"});
-        visit(
-            self.brushing,
-            FieldInfo{.key = "brushing", .unit = "", .doc = "Select the prism behind a face by dragging on the face"});
+        visit(self.showAxes, FieldInfo{"axes", "Draw axes with ticks and units at the edges of the cube"});
+        visit(self.brushing, FieldInfo{"brushing", "Select the prism behind a face by dragging on the face"});
     }
 };
 DrawView<ShadowCubeView> drawShadowCubeView;
@@ -184,61 +161,51 @@ struct TesseractView {
     float tourSpeed = 12;
     bool operator==(const TesseractView&) const = default;
     static void describe(auto& self, auto&& visit) {
-        visit(self.channel, FieldInfo{.key = "channel", .unit = "", .doc = "Parameter shown", .refersTo = "channel"});
+        visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
         visit(self.fourth, FieldInfo{.key = "fourth",
-                                     .unit = "",
                                      .doc = "Parameter along the fourth axis, at the time shown; empty: time itself",
                                      .refersTo = "optionalChannel"});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
-                                      .unit = "",
                                       .doc = "Colour points by their value or by the fourth axis",
                                       .names = kTesseractColorNames});
         const Range turn{-180, 180};
         visit(self.turn, FieldInfo{.key = "turn",
-                                   .unit = "deg",
                                    .doc = "Rotation in the planes xy, xz, yz, in this order",
+                                   .unit = "deg",
                                    .range = turn});
         visit(self.turn4, FieldInfo{.key = "turn4",
-                                    .unit = "deg",
                                     .doc = "Rotation in the planes xw, yw, zw, after the others; w is the fourth axis",
+                                    .unit = "deg",
                                     .range = turn});
         visit(self.eye, FieldInfo{.key = "eye",
-                                  .unit = "radius",
                                   .doc = "Distance of the eye along the fourth axis, in radii of the tesseract",
+                                  .unit = "radius",
                                   .range = Range{1.1, 20},
                                   .logScale = true});
         visit(self.zoom, FieldInfo{.key = "zoom",
-                                   .unit = "",
                                    .doc = "Magnification; at 1 the tesseract fits at any angle",
                                    .range = Range{0.2, 10},
                                    .logScale = true});
         visit(self.radius,
-              FieldInfo{.key = "radius", .unit = "pixel", .doc = "Radius of a splat", .range = Range{0.5, 20}});
-        visit(self.density, FieldInfo{.key = "density",
-                                      .unit = "",
-                                      .doc = "Opacity of the points",
-                                      .range = Range{0.01, 20},
-                                      .logScale = true});
+              FieldInfo{.key = "radius", .doc = "Radius of a splat", .unit = "pixel", .range = Range{0.5, 20}});
+        visit(self.density,
+              FieldInfo{.key = "density", .doc = "Opacity of the points", .range = Range{0.01, 20}, .logScale = true});
         visit(self.points, FieldInfo{.key = "points",
-                                     .unit = "",
                                      .doc = "Largest number of samples drawn",
                                      .range = Range{1000, 2000000},
                                      .logScale = true});
-        visit(self.cube, FieldInfo{.key = "cube",
-                                   .unit = "",
-                                   .doc = "Draw all axes equally long; else in the proportions of the 3D view"});
-        visit(self.showWire, FieldInfo{.key = "wire", .unit = "", .doc = "Draw the edges of the tesseract"});
-        visit(self.showNow, FieldInfo{.key = "now", .unit = "", .doc = "Draw the cell of the time shown"});
-        visit(self.showLegend, FieldInfo{.key = "legend", .unit = "", .doc = "Draw colour legends"});
-        visit(self.showControls, FieldInfo{.key = "controls", .unit = "", .doc = "Show a slider for each plane"});
-        visit(self.lattice, FieldInfo{.key = "lattice",
-                                      .unit = "",
-                                      .doc = "Lattice cells drawn along each axis; 0 = none",
-                                      .range = Range{0, 8}});
-        visit(self.tour, FieldInfo{.key = "tour", .unit = "", .doc = "Keep turning in two planes at once"});
+        visit(self.cube, FieldInfo{"cube", "Draw all axes equally long; else in the proportions of the 3D view"});
+        visit(self.showWire, FieldInfo{"wire", "Draw the edges of the tesseract"});
+        visit(self.showNow, FieldInfo{"now", "Draw the cell of the time shown"});
+        visit(self.showLegend, FieldInfo{"legend", "Draw colour legends"});
+        visit(self.showControls, FieldInfo{"controls", "Show a slider for each plane"});
+        visit(
+            self.lattice,
+            FieldInfo{.key = "lattice", .doc = "Lattice cells drawn along each axis; 0 = none", .range = Range{0, 8}});
+        visit(self.tour, FieldInfo{"tour", "Keep turning in two planes at once"});
         visit(self.tourSpeed, FieldInfo{.key = "tourSpeed",
-                                        .unit = "deg/s",
                                         .doc = "Speed of the tour",
+                                        .unit = "deg/s",
                                         .range = Range{1, 90},
                                         .applies = self.tour});
     }
