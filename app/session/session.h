@@ -2,7 +2,7 @@
 
 #include "app/session/animation.h"
 #include "app/session/dock_tree.h"
-#include "app/session/view_state.h"
+#include "app/session/views/view_state.h"
 #include "codec/pack/pack.h"
 #include "codec/remote/remote_options.h"
 #include "vis/scene/scene.h"

@@ -1,6 +1,6 @@
+#include "app/command/merge_layouts.h"
 #include "bench/bench.h"
 #include "bench/data/bench_archives.h"
-#include "app/command/merge_layouts.h"
 
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"

@@ -1,6 +1,6 @@
+#include "app/command/answers/stats_answer.h"
 #include "app/command/command.h"
 #include "app/command/derive_option.h"
-#include "app/command/stats_answer.h"
 #include "app/data/format.h"
 #include "app/data/import_options.h"
 #include "app/data/open.h"

@@ -1,4 +1,4 @@
-#include "app/command/stats_answer.h"
+#include "app/command/answers/stats_answer.h"
 
 #include "app/pane/view_parts.h"
 #include "app/session/label_colors.h"

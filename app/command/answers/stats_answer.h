@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/command/stats_question.h"
+#include "app/command/answers/stats_question.h"
 #include "app/described/describe_json.h"
 #include "app/values/plot.h"
 #include "volume/base/progress.h"

@@ -1,4 +1,4 @@
-#include "app/command/stats_question.h"
+#include "app/command/answers/stats_question.h"
 
 #include "app/command/command.h"
 #include "app/pane/view_parts.h"

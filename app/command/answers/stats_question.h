@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/data/sources.h"
-#include "app/session/section_settings.h"
+#include "app/session/views/section_settings.h"
 #include "app/views/curves/section_data.h"
 #include "volume/base/describe.h"
 #include "volume/derived/derived.h"

@@ -1,6 +1,6 @@
 #include "app/command/command.h"
 #include "app/command/picture_options.h"
-#include "app/command/video.h"
+#include "app/command/pictures/video.h"
 #include "app/history/animated_session.h"
 #include "codec/blocks/share_results.h"
 #include "volume/base/error.h"

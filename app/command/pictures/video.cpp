@@ -1,4 +1,4 @@
-#include "app/command/video.h"
+#include "app/command/pictures/video.h"
 
 #include "volume/base/error.h"
 #include "volume/system/process.h"

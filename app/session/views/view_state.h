@@ -1,9 +1,9 @@
 #pragma once
 
-#include "app/session/view_kind.h"
-#include "app/session/view_state_compare.h"
-#include "app/session/view_state_plots.h"
-#include "app/session/view_state_scenes.h"
+#include "app/session/views/view_kind.h"
+#include "app/session/views/view_state_compare.h"
+#include "app/session/views/view_state_plots.h"
+#include "app/session/views/view_state_scenes.h"
 
 #include <array>
 #include <string>

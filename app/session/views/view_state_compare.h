@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/session/view_kind.h"
+#include "app/session/views/view_kind.h"
 #include "volume/base/describe.h"
 
 #include <map>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "app/session/contour_settings.h"
-#include "app/session/section_settings.h"
-#include "app/session/view_kind.h"
+#include "app/session/views/contour_settings.h"
+#include "app/session/views/section_settings.h"
+#include "app/session/views/view_kind.h"
 #include "volume/base/data_units.h"
 #include "volume/base/describe.h"
 #include "volume/field/space_axis.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "app/session/contour_settings.h"
-#include "app/session/view_kind.h"
+#include "app/session/views/contour_settings.h"
+#include "app/session/views/view_kind.h"
 #include "vis/scene/camera.h"
 #include "vis/scene/layers.h"
 #include "volume/base/data_units.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/pane/controls.h"
-#include "app/session/view_state.h"
+#include "app/session/views/view_state.h"
 #include "app/values/table.h"
 
 #include <string>

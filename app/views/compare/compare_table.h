@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/edits/compare.h"
-#include "app/session/view_state_compare.h"
+#include "app/session/views/view_state_compare.h"
 #include "app/values/table.h"
 
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "app/data/number_origin.h"
-#include "app/session/section_settings.h"
+#include "app/session/views/section_settings.h"
 #include "app/values/plot.h"
 #include "app/values/table.h"
 #include "vis/scene/selection.h"

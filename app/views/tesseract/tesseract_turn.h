@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/session/view_state_scenes.h"
+#include "app/session/views/view_state_scenes.h"
 #include "vis/shapes/rotation4.h"
 
 /// The turn of the tesseract in its six planes.
