@@ -227,7 +227,8 @@ LegendEntry legendOfVolume(const vis::VolumeLayer& volume, LegendEntry entry) {
 } // namespace
 
 std::optional<FigureLegends> figureLegends(const ViewContext& context) {
-    return context.figure ? std::optional(context.session.appearance.legends) : std::nullopt;
+    if (context.takesInput()) return std::nullopt;
+    return context.session.appearance.legends;
 }
 
 std::vector<LegendEntry> sceneLegends(const Session& session, const volume::DatasetInfo& info, bool drawings) {

@@ -301,7 +301,7 @@ void drawCaptionedPane(const Frame& frame, const std::string& pane, std::size_t 
     if (frame.context.decoration.title)
         ImGui::GetWindowDrawList()->AddText({box.min.x + em() * 0.5f, box.min.y}, plotColors().text,
                                             fitText(caption, box.size.x - em()).c_str());
-    if (!frame.context.figure) {
+    if (frame.context.takesInput()) {
         ImGui::SetCursorScreenPos(box.min);
         if (mouseArea("caption", {box.size.x, head})) ImGui::OpenPopup("variant");
         if (ImGui::IsItemHovered()) tooltip("Click to change this variant");
@@ -351,7 +351,7 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
 
     const ImVec2 room = ImGui::GetContentRegionAvail(), at = ImGui::GetCursorScreenPos();
     const bool bare = context.decoration == Decoration::preset("none");
-    const CompareAreas areas = compareAreas(view, count, room, context.figure, bare);
+    const CompareAreas areas = compareAreas(view, count, room, !context.takesInput(), bare);
     const ImVec2 area = areas.pictures;
     if (area.x < 24 || area.y < 24) return;
     const CompareMode mode = modeOf(view);
@@ -374,9 +374,9 @@ void drawCompareView(ViewContext& context, const std::string& pane, CompareView&
     cache.rows = cache.pictures.rows(context, frame.reference);
     if (areas.table > 0) {
         ImGui::SetCursorScreenPos({at.x, at.y + area.y});
-        drawCompareTable(view, cache.rows, context.figure);
+        drawCompareTable(view, cache.rows, !context.takesInput());
     }
-    if (context.figure) return;
+    if (!context.takesInput()) return;
     ImGui::SetCursorScreenPos({at.x, at.y + area.y + areas.table});
     std::vector<std::string> names;
     for (std::size_t i = 0; i < count; ++i) names.push_back(nameOf(frame, i));

@@ -312,7 +312,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     ShadowCubeCache& cache = cacheOf<ShadowCubeCache>(context, pane);
     const volume::DatasetInfo& info = context.source->info();
     Session& session = context.session;
-    if (!context.figure) drawToolbar(context, info, view);
+    if (context.takesInput()) drawToolbar(context, info, view);
     const ImVec2 left = ImGui::GetContentRegionAvail();
     CubeFrame frame{.info = info,
                     .min = ImGui::GetCursorScreenPos(),

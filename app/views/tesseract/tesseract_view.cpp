@@ -319,7 +319,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     TesseractCache& cache = cacheOf<TesseractCache>(context, pane);
     drawToolbar(context, cache, view, info.channel(*channel).name);
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const float below = view.showControls && !context.figure && room.y > em() * 14 && room.x > em() * 12
+    const float below = view.showControls && context.takesInput() && room.y > em() * 14 && room.x > em() * 12
                             ? slidersHeight(room.x) + ImGui::GetStyle().ItemSpacing.y
                             : 0;
     const ImVec2 min = ImGui::GetCursorScreenPos(), size{std::floor(room.x), std::floor(room.y - below)};

@@ -67,7 +67,7 @@ LinkControl::LinkControl(const ViewContext& context, const VolumeView& view, con
     size_ = {side, side};
     min_ = {picture.max().x - gap - side, picture.min.y + gap};
     const bool over = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
-    shown_ = !context.figure && picture.size.x > side * 4 && picture.size.y > side * 3 &&
+    shown_ = context.takesInput() && picture.size.x > side * 4 && picture.size.y > side * 3 &&
              (over || ownsAny(view) || volumeViews(context.session) > 1 || ImGui::IsPopupOpen(kMenu));
 }
 

@@ -210,7 +210,7 @@ private:
         drawProfileLines(*list_, space, session_);
         if (!view_.showLenses) return;
         drawLenses(*list_, space, session_, cache_.lens.lens);
-        if (context_.figure) return; // nobody can drag there
+        if (!context_.takesInput()) return; // nobody can drag there
         drawLensHandles(*list_, cache_.lens, space, session_);
         drawHandles(*list_, cache_.handles, space, session_, info_, view_.showLights);
     }
@@ -298,7 +298,7 @@ private:
             taken_.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
         }
         // The window has its timeline, but not where time runs along an axis.
-        if ((context_.figure || session_.data.timeAxis || view_.time) && info_.times.size() > 1)
+        if ((!context_.takesInput() || session_.data.timeAxis || view_.time) && info_.times.size() > 1)
             drawUpperLeft(stateText(info_, session_.time, session_.data.axis), plotColors().text);
     }
 
