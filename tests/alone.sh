@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Whether C++ files compile alone, as they do in the presets without groups of files: those given, or those that differ
-# from a commit (the last one on main). Needs build/release.
+# Whether C++ files of the product compile alone, as they do in the presets without groups of files: those given, or
+# those that differ from a commit (HEAD).
 #   tests/alone.sh [FILE.cpp ...]      BASE=main tests/alone.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."

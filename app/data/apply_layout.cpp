@@ -76,7 +76,9 @@ std::string findLayout(const std::string& nameOrPath) {
     std::error_code problem;
     if (hasEnding(nameOrPath, ".json") && fs::is_regular_file(nameOrPath, problem)) return nameOrPath;
     std::string known;
-    for (const std::string& name : layoutNames()) {
+    std::vector<std::string> names = layoutNames();
+    std::ranges::stable_partition(names, [&](const std::string& name) { return name == nameOrPath; });
+    for (const std::string& name : names) {
         known += (known.empty() ? "" : ", ") + name;
         if (!sameName(name, nameOrPath)) continue;
         for (const fs::path& folder : layoutFolders())

@@ -182,10 +182,16 @@ private:
         const double left = within(px(shown.x.lo), x0_, x1_), right = within(px(shown.x.hi), x0_, x1_),
                      low = within(py(shown.y.lo), y1_, y0_), high = within(py(shown.y.hi), y1_, y0_);
         if (!shown.dashed) rect({left, high}, {right, low}, glm::vec4(shown.color, kFill));
+        const auto edge = [&](glm::dvec2 from, glm::dvec2 to) {
+            if (!shown.dashed) return stroke({from, to}, glm::vec4(shown.color, 1), kPageLine);
+            DashPattern(points(kPageDash), points(kPageDashPeriod)).line(from, to, [&](glm::dvec2 a, glm::dvec2 b) {
+                stroke({a, b}, glm::vec4(shown.color, 1), kPageLine);
+            });
+        };
         for (const double x : {left, right})
-            if (x > x0_ && x < x1_) stroke({{x, high}, {x, low}}, glm::vec4(shown.color, 1), kPageLine);
+            if (x > x0_ && x < x1_) edge({x, high}, {x, low});
         for (const double y : {low, high})
-            if (y > y1_ && y < y0_) stroke({{left, y}, {right, y}}, glm::vec4(shown.color, 1), kPageLine);
+            if (y > y1_ && y < y0_) edge({left, y}, {right, y});
     }
     /// From zero to their heights: side by side, or a single one between those of other series one unit away.
     void bars(const PlotSeries& series) {

@@ -67,6 +67,11 @@ bool darkTheme() {
     return background.x + background.y + background.z < 1.5f;
 }
 
+std::array<ImU32, 2> sampleColors(bool dark) {
+    return dark ? std::array{IM_COL32(128, 142, 160, 255), IM_COL32(255, 176, 64, 255)}
+                : std::array{IM_COL32(134, 146, 162, 255), IM_COL32(214, 106, 0, 255)};
+}
+
 PlotColors plotColors() {
     const bool dark = darkTheme();
     const ImVec4 text = ImGui::GetStyleColorVec4(ImGuiCol_Text);
@@ -75,8 +80,9 @@ PlotColors plotColors() {
     colors.faint = withAlpha(text, 0.55f);
     colors.frame = withAlpha(text, 0.3f);
     colors.grid = withAlpha(text, 0.08f);
-    colors.bars = dark ? IM_COL32(128, 142, 160, 255) : IM_COL32(134, 146, 162, 255);
-    colors.focus = dark ? IM_COL32(255, 176, 64, 255) : IM_COL32(214, 106, 0, 255);
+    const auto [bars, focus] = sampleColors(dark);
+    colors.bars = bars;
+    colors.focus = focus;
     colors.cursor = dark ? IM_COL32(94, 214, 255, 230) : IM_COL32(0, 112, 176, 230);
     colors.brush = dark ? IM_COL32(255, 196, 96, 255) : IM_COL32(176, 84, 0, 255);
     colors.brushFill = dark ? IM_COL32(255, 196, 96, 28) : IM_COL32(214, 106, 0, 26);

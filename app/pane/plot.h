@@ -40,6 +40,8 @@ struct PlotColors {
     ImU32 frame, grid, text, faint, bars, focus, cursor, brush, brushFill, backdrop;
 };
 PlotColors plotColors();
+/// Those of bars of samples and of samples in focus, on a light or dark ground.
+std::array<ImU32, 2> sampleColors(bool dark);
 bool darkTheme();
 
 /// One em: the height of the font.

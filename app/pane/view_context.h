@@ -37,6 +37,7 @@ struct ViewCache {
 struct ViewExport {
     std::string name; ///< of a file, without ending
     std::function<VectorPage(const PageForm&, const Progress&)> figure = {};
+    bool whole = true; ///< the figure has all that the pane shows; else pages of the view are drawn as the pane is
     std::function<Table(const Progress&)> table = {}; ///< its first note says where its numbers come from
 };
 
@@ -111,7 +112,7 @@ struct ViewContext {
         false; ///< some edit is in progress (mouse held on a control): draw at reduced size; views set it
     ViewAnswers answers = {}; ///< what the view has to say
 
-    /// Whether anybody can point at the pane, press and drag there: not so in a picture for a page.
+    /// Whether the pane has controls and handles: not so in a picture for a page.
     bool takesInput() const { return !figure; }
 };
 

@@ -241,6 +241,7 @@ void exportPlanes(ViewContext& context, ToolRow& tools, const std::string& name,
                     [source, shown, columns](const PageForm& form, const Progress& progress) {
                         return planesPage(*source, *shown, columns, form, progress);
                     },
+                .whole = false,
                 .table = [source, shown, channels = std::move(channels)](
                              const Progress& progress) { return planesTable(*source, *shown, channels, progress); }});
 }

@@ -67,7 +67,7 @@ auto withWorkbench(const SessionDocument& document, const Sources& sources, std:
     return draw(workbench);
 }
 
-/// A view as a page: its own figure, else what ImGui draws of it.
+/// A view as a page: its own figure if that has all that the pane shows, else what ImGui draws of it.
 VectorPage pageOfPane(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
                       const PictureRequest& request, const Inspect& inspect) {
     return withWorkbench(document, sources, std::move(renderer), request, [&](Workbench& workbench) {
@@ -75,7 +75,7 @@ VectorPage pageOfPane(const SessionDocument& document, const Sources& sources, s
         drawUntilDone(target, workbench, request.scale);
         if (inspect) inspect(workbench);
         const ViewExport* offered = workbench.exported(request.pane);
-        if (offered && offered->figure)
+        if (offered && offered->figure && offered->whole)
             return offered->figure(pageForm(request, document.session.appearance.theme), {});
         VectorPage page = target.page(workbench, pointsPerPixel(request));
         page.numbers = originText(sources.origin, sources.numbers->info());

@@ -31,8 +31,8 @@ public:
     std::string table(const SessionDocument& document, const Sources& sources, const PictureRequest& request,
                       const Progress& progress = {});
 
-    /// The page that write() writes as SVG or PDF, of the size that is asked for: the figures of views that have one of
-    /// their own, else what render() would draw, as vector graphics.
+    /// The page that write() writes as SVG or PDF: figures of views that have all that is shown, else what render()
+    /// would draw, as vector graphics. It has the size that is asked for; a table is as high as its rows take.
     VectorPage page(const SessionDocument& document, const Sources& sources, const PictureRequest& request);
 
     /// writePicture.

@@ -40,8 +40,9 @@ std::vector<ImVec2> alongSeries(const Plot& plot, const PlotFrame& frame) {
 }
 
 void drawSeriesBars(ImDrawList& draw, const PlotSeries& series, const PlotFrame& frame) {
-    if (series.points.size() < 2) return;
-    const double half = (series.points[1].x - series.points[0].x) / 2;
+    // A single bar is as wide as the plot.
+    const bool several = series.points.size() > 1;
+    const double half = (several ? series.points[1].x - series.points[0].x : frame.x.hi - frame.x.lo) / 2;
     const float zero = frame.pixel(frame.x.lo, std::clamp(0.0, frame.y.lo, frame.y.hi)).y;
     for (const glm::dvec2& bar : series.points) {
         if (!(bar.y > 0 || bar.y < 0)) continue;
@@ -115,7 +116,7 @@ void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, b
     const bool single = plot.series.size() == 1;
     std::vector<std::pair<std::string, ImU32>> names;
     const std::string up = titleWithUnit(plot.y.title, plot.y.unit);
-    if (plot.series.empty())
+    if (plot.series.empty() && !plot.title.empty())
         names.emplace_back(plot.title + (titled ? "" : ", up: " + up), plotColors().text);
     else if (!plot.title.empty())
         names.emplace_back(plot.title, plotColors().text);
@@ -154,7 +155,7 @@ void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, b
     }
 }
 
-void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool titled, float left) {
+void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool titled, float left, bool grid) {
     const PlotColors colors = plotColors();
     drawPlotNames(draw, plot, frame, titled); // below the lines: a low plot has no room beside them
     draw.PushClipRect({frame.min.x - em(), frame.min.y}, {frame.max.x + em(), frame.max.y}, true);
@@ -172,7 +173,7 @@ void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool t
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Left, titled ? plot.y.title : "", titled ? plot.y.unit : "",
-             frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f, {.room = left});
+             frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f, {.grid = grid, .room = left});
 }
 
 void drawPlotBottom(ImDrawList& draw, const Plot& last, const PlotColumn& column) {

@@ -26,8 +26,10 @@ struct PlotColumn {
 std::optional<PlotColumn> placePlots(const std::vector<Plot>& plots, float beside = 0);
 
 /// What a plot shows, but for its picture: lines, bars, dots, marks, the cursor, the names of series with their values
-/// at the cursor, frame and vertical axis. `left`: room for the numbers of the axis, pixels.
-void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool titled = false, float left = 0);
+/// at the cursor, frame and vertical axis, with lines across if `grid`. `left`: room for the numbers of the axis,
+/// pixels.
+void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool titled = false, float left = 0,
+              bool grid = false);
 
 /// Names in the corner of a plot that is freest, without what they stand for.
 void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool titled);

@@ -50,13 +50,15 @@ std::string numberCell(const TableColumn& column, std::size_t row) {
     return {};
 }
 
-/// A field of a CSV file. Whole numbers keep all digits, others have nine.
+/// A field of a CSV file. Numbers of up to 15 digits are whole, others have nine: as many as a float has.
 std::string fieldOf(const TableColumn& column, std::size_t row) {
     if (!column.texts.empty()) return csvField(column.texts[row]);
     const double value = column.numbers[row];
     if (std::isnan(value)) return {};
     if (column.kind == NumberKind::Flag) return value != 0 ? "yes" : "no";
-    return printedNumber(std::abs(value) < 1e15 && value == std::round(value) ? "%.0f" : "%.9g", value);
+    if (std::abs(value) < 1e15 && value == std::round(value)) return printedNumber("%.0f", value);
+    const std::string text = printedNumber("%.15g", value);
+    return std::strtod(text.c_str(), nullptr) == value ? text : printedNumber("%.9g", value);
 }
 
 std::size_t lettersOf(const std::string& text) { // of UTF-8

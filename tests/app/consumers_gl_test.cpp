@@ -208,8 +208,9 @@ protected:
                                                   : several ? glm::ivec2(520, 300)
                                                             : glm::ivec2(420, 640));
         const ViewExport* offered = workbench.exported("pane");
-        if (offered && offered->table && !several && kind != "slices") return csvOf(offered->table({}));
-        return {image.rgba.begin(), image.rgba.end()};
+        const std::string table = offered && offered->table && !several ? csvOf(offered->table({})) : std::string();
+        if (!table.empty() && kind != "slices") return table;
+        return table + std::string(image.rgba.begin(), image.rgba.end());
     }
 };
 

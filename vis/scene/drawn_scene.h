@@ -15,7 +15,7 @@ struct DrawnChannel {
     int channel = 0;           ///< index into DatasetInfo::channels()
     bool categorical = false;  ///< labels, which are never interpolated
     std::string transfer = {}; ///< name of a function of a layer's own; "": that of the channel
-    double timeShift = 0;      ///< seconds, added to the time of the scene
+    double timeShift = 0;      ///< in the unit of the times of the data, added to the time of the scene
     const TransferFunction* function = nullptr;
     Range range = {}; ///< of the function
 };

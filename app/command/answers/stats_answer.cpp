@@ -197,15 +197,14 @@ std::vector<Plot> figureOf(const Question& question, const Json& rows) {
         const double time = row["time"];
         if (balance) {
             const std::string surface = row["surface"];
-            Plot& panel = panelOf(
-                panels, region, {region, overTime, {titleWithUnit("out - in of " + parameter, unit), {0, 0}}, {}, {}});
+            const PlotAxis up{.title = "out - in of " + parameter, .range = {0, 0}, .unit = unit};
+            Plot& panel = panelOf(panels, region, {region, overTime, up, {}, {}});
             PlotSeries& line = lineOf(panel, surface, {surface, {}, labelColor({}, int(panel.series.size()) + 1)});
             line.bars = bars;
             addPoint(panel, line, bars ? double(&line - panel.series.data()) + 1 : time, numberOf(row["net"]));
         } else {
-            Plot& panel =
-                panelOf(panels, parameter,
-                        {{}, overTime, {titleWithUnit("mean of " + parameter, unit), {HUGE_VAL, -HUGE_VAL}}, {}, {}});
+            const PlotAxis up{.title = "mean of " + parameter, .range = {HUGE_VAL, -HUGE_VAL}, .unit = unit};
+            Plot& panel = panelOf(panels, parameter, {{}, overTime, up, {}, {}});
             addPoint(panel, lineOf(panel, region, {region, {}, colorOf(question, region)}), time,
                      numberOf(row["mean"]));
         }

@@ -172,47 +172,53 @@ std::string placeTitle(const SectionCurvesQuery& asked) {
 
 Table sectionTable(const volume::DatasetInfo& info, const SectionCurves& curves) {
     const auto& [asked, sections, velocity, errors] = curves;
-    Table table;
-    std::map<std::string, std::size_t> places;
-    const auto column = [&](const std::string& name, const std::string& unit = {}) -> TableColumn& {
-        const auto [at, added] = places.try_emplace(name, table.columns.size());
-        if (added) table.columns.push_back({.name = name, .unit = unit});
-        return table.columns[at->second];
+    const std::vector<CurveLook> looks = curveLooks(info, asked);
+    struct Row {
+        std::size_t region, channel, plane;
     };
+    std::vector<Row> rows;
+    for (std::size_t r = 0; r < looks.size(); ++r)
+        for (std::size_t c = 0; c < asked.channels.size(); ++c)
+            if (std::ranges::any_of(sections.values[r][c], [](const auto& plane) { return plane.area > 0; }))
+                for (std::size_t p = 0; p < sections.place.size(); ++p) rows.push_back({r, c, p});
+    const auto channelAt = [&](const Row& row) { return channelOf(info, asked.channels[row.channel]); };
+    const auto unitAt = [&](const Row& row, SectionMeasure measure) {
+        return measureUnit(info, asked.channels[row.channel], velocity, measure);
+    };
+    const auto valuesAt = [&](const Row& row) { return sections.values[row.region][row.channel][row.plane]; };
+    Table table;
     const double weight = asked.time.weight;
     const double time = info.times[static_cast<std::size_t>(asked.time.earlier)] * (1 - weight) +
                         info.times[static_cast<std::size_t>(asked.time.later)] * weight;
-    const std::vector<CurveLook> looks = curveLooks(info, asked);
-    const auto add = [&](std::size_t r, std::size_t c, std::size_t p, const std::vector<volume::ComposedUnit>& units) {
-        const volume::Channel channel = channelOf(info, asked.channels[c]);
-        const volume::SectionValues& values = sections.values[r][c][p];
-        if (info.times.size() > 1) column(info.timeName, info.timeUnit).numbers.push_back(time);
-        column(placeTitle(asked), info.lengthUnit).numbers.push_back(sections.place[p]);
-        column("region").texts.push_back(looks[r].name);
-        column("parameter").texts.push_back(channel.name);
-        column("unit").texts.push_back(channel.unit);
-        column("weight").texts.emplace_back(volume::kSectionWeightNames[static_cast<std::size_t>(asked.weight)]);
-        column("samples").numbers.push_back(values.samples);
-        for (std::size_t m = 0; m < std::size(kMeasures); ++m) {
-            const std::string name(m == 1 ? "min" : m == 2 ? "max" : kSectionMeasureNames[std::size_t(kMeasures[m])]);
-            const bool carried = kMeasures[m] == SectionMeasure::Flux || kMeasures[m] == SectionMeasure::Flow;
-            column(name).numbers.push_back(
-                carried && velocity.empty() ? std::nan("") : measured(values, kMeasures[m], units[m].factor));
-            if (kMeasures[m] > SectionMeasure::Most) column(name + " unit").texts.push_back(units[m].unit);
-        }
-        for (std::size_t m = 0; m < std::size(kMeasures); ++m)
-            if (!errors.empty() && kMeasures[m] != SectionMeasure::Area)
-                column("error of " + std::string(kSectionMeasureNames[std::size_t(kMeasures[m])]))
-                    .numbers.push_back(errorOf(curves, c, values, kMeasures[m], units[m].factor));
-    };
-    for (std::size_t r = 0; r < looks.size(); ++r)
-        for (std::size_t c = 0; c < asked.channels.size(); ++c) {
-            if (std::ranges::none_of(sections.values[r][c], [](const auto& plane) { return plane.area > 0; })) continue;
-            std::vector<volume::ComposedUnit> units;
-            for (const SectionMeasure measure : kMeasures)
-                units.push_back(measureUnit(info, asked.channels[c], velocity, measure));
-            for (std::size_t p = 0; p < sections.place.size(); ++p) add(r, c, p, units);
-        }
+    if (info.times.size() > 1)
+        addColumn(table, rows, {.name = info.timeName, .unit = info.timeUnit}, [&](const Row&) { return time; });
+    addColumn(table, rows, {.name = placeTitle(asked), .unit = info.lengthUnit},
+              [&](const Row& row) { return sections.place[row.plane]; });
+    addColumn(table, rows, {.name = "region"}, [&](const Row& row) { return looks[row.region].name; });
+    addColumn(table, rows, {.name = "parameter"}, [&](const Row& row) { return channelAt(row).name; });
+    addColumn(table, rows, {.name = "unit"}, [&](const Row& row) { return channelAt(row).unit; });
+    addColumn(table, rows, {.name = "weight"}, [&](const Row&) {
+        return std::string(volume::kSectionWeightNames[static_cast<std::size_t>(asked.weight)]);
+    });
+    addColumn(table, rows, {.name = "samples"}, [&](const Row& row) { return valuesAt(row).samples; });
+    for (const SectionMeasure measure : kMeasures) {
+        const std::string name(measure == SectionMeasure::Least  ? "min"
+                               : measure == SectionMeasure::Most ? "max"
+                                                                 : kSectionMeasureNames[std::size_t(measure)]);
+        const bool carried = measure == SectionMeasure::Flux || measure == SectionMeasure::Flow;
+        addColumn(table, rows, {.name = name}, [&](const Row& row) {
+            if (carried && velocity.empty()) return std::nan("");
+            return measured(valuesAt(row), measure, unitAt(row, measure).factor);
+        });
+        if (measure > SectionMeasure::Most)
+            addColumn(table, rows, {.name = name + " unit"}, [&](const Row& row) { return unitAt(row, measure).unit; });
+    }
+    for (const SectionMeasure measure : kMeasures)
+        if (!errors.empty() && measure != SectionMeasure::Area)
+            addColumn(table, rows, {.name = "error of " + std::string(kSectionMeasureNames[std::size_t(measure)])},
+                      [&](const Row& row) {
+                          return errorOf(curves, row.channel, valuesAt(row), measure, unitAt(row, measure).factor);
+                      });
     return table;
 }
 
@@ -243,15 +249,13 @@ std::vector<Plot> sectionPanels(const volume::DatasetInfo& info, const SectionCu
             if (any) panel.series.push_back(std::move(series));
         }
         const std::string what = std::string(kSectionMeasureNames[static_cast<std::size_t>(measure)]);
-        panel.x = {titleWithUnit(placeTitle(asked), length.name),
-                   sections.place.empty()
-                       ? Range{}
-                       : Range{sections.place.front() * length.perUnit, sections.place.back() * length.perUnit}};
-        panel.y = {titleWithUnit(measure == SectionMeasure::Flow || measure == SectionMeasure::Area
-                                     ? what + " where " + channel.name + " exists"
-                                     : what + " of " + channel.name,
-                                 unit.unit),
-                   range.lo <= range.hi ? paddedRange(range, 0.05) : Range{0, 1}};
+        const bool everywhere = measure != SectionMeasure::Flow && measure != SectionMeasure::Area;
+        panel.x = {.title = placeTitle(asked), .range = {}, .unit = length.name};
+        if (!sections.place.empty())
+            panel.x.range = {sections.place.front() * length.perUnit, sections.place.back() * length.perUnit};
+        panel.y = {.title = what + (everywhere ? " of " + channel.name : " where " + channel.name + " exists"),
+                   .range = range.lo <= range.hi ? paddedRange(range, 0.05) : Range{0, 1},
+                   .unit = unit.unit};
         if (panel.series.size() == 1 && panel.series[0].name != "all") panel.title = panel.series[0].name;
         panels.push_back(std::move(panel));
     }

@@ -19,7 +19,7 @@ Plot histogramCell(const volume::Histogram& histogram, bool brushed, const Scatt
     Plot cell;
     std::uint64_t most = 1;
     for (const std::uint64_t count : histogram.count) most = std::max(most, count);
-    const auto height = [&](double count) { return look.logDensity ? std::log1p(count) : count; };
+    const auto height = [&](double count) { return look.logDensity ? std::log10(1 + count) : count; };
     const ImVec4 focus = ImGui::ColorConvertU32ToFloat4(look.focus);
     cell.series = {{.name = "", .points = {}, .color = {0.53f, 0.57f, 0.64f}, .bars = true}};
     if (brushed) cell.series.push_back({.name = "", .points = {}, .color = {focus.x, focus.y, focus.z}, .bars = true});
@@ -30,7 +30,7 @@ Plot histogramCell(const volume::Histogram& histogram, bool brushed, const Scatt
         if (brushed) cell.series[1].points.push_back({at, height(histogram.focus[i])});
     }
     cell.y = {.title = !alone            ? ""
-                       : look.logDensity ? "ln(1 + samples)"
+                       : look.logDensity ? "log10(1 + samples)"
                                          : "samples",
               .range = {0, height(double(most)) / kHighestBar},
               .numbered = alone};

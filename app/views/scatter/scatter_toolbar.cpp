@@ -93,6 +93,7 @@ void drawMore(ViewContext& context, ToolRow& tools, ScatterMatrixView& view, con
         {.name = "scatterplots",
          .figure = [info, result, look, count = shown.size()](
                        const PageForm& form, const Progress&) { return matrixPage(info, *result, count, look, form); },
+         .whole = false,
          .table = [info, result](const Progress&) { return matrixTable(info, *result); }});
 }
 

@@ -40,6 +40,7 @@ Table histogramTable(const volume::Channel& channel, const volume::Histogram& hi
 /// Bars of all samples, and over them of those in focus.
 struct HistogramLook {
     bool logCounts = false, brushed = false;
+    bool ownFocus = false; ///< the focus has the colour of its brush
     glm::vec3 all{0}, focus{0};
 };
 
@@ -65,6 +66,11 @@ Plot histogramPlot(const volume::Channel& channel, Range range, const volume::Hi
     return plot;
 }
 
+glm::vec3 inkOf(ImU32 color) {
+    const ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
+    return {c.x, c.y, c.z};
+}
+
 /// The ranges of the parameter that brushes select.
 std::vector<PlotBand> brushedBands(const vis::Selection& selection, const PlotChannels& channels) {
     std::vector<PlotBand> bands;
@@ -72,10 +78,9 @@ std::vector<PlotBand> brushedBands(const vis::Selection& selection, const PlotCh
         const auto* region = std::get_if<vis::RangeRegion>(&brush.region);
         if (!region || !brushFits(brush, channels)) continue;
         for (const vis::BrushInterval& each : region->intervals) {
-            const ImVec4 ink = ImGui::ColorConvertU32ToFloat4(brushColor(brush));
             bands.push_back({{each.lo, each.hi},
                              {-HUGE_VAL, HUGE_VAL},
-                             {ink.x, ink.y, ink.z},
+                             brush.enabled ? inkOf(brushColor(brush)) : glm::vec3(0.5f),
                              !brush.enabled || brush.inverted != (brush.combine == vis::BrushCombine::Minus)});
         }
     }
@@ -83,11 +88,19 @@ std::vector<PlotBand> brushedBands(const vis::Selection& selection, const PlotCh
 }
 
 HistogramLook histogramLook(const ViewContext& context, const HistogramView& view, bool brushed) {
-    const auto ink = [](ImU32 color) {
-        const ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
-        return glm::vec3(c.x, c.y, c.z);
-    };
-    return {view.logCounts, brushed, ink(plotColors().bars), ink(focusColor(context.session))};
+    const PlotColors colors = plotColors();
+    const ImU32 focus = focusColor(context.session);
+    return {view.logCounts, brushed, focus != colors.focus, inkOf(colors.bars), inkOf(focus)};
+}
+
+constexpr float kOnWhite = 0.7f; ///< of colours of brushes, which are bright
+
+/// The same on a page, whose ground may be another than the window's.
+HistogramLook onPage(HistogramLook look, bool dark) {
+    const auto [bars, focus] = sampleColors(dark);
+    look.all = inkOf(bars);
+    look.focus = look.ownFocus ? look.focus * (dark ? 1 : kOnWhite) : inkOf(focus);
+    return look;
 }
 
 void hover(const volume::Channel& channel, const StatisticsResult& result, const PlotFrame& frame) {
@@ -130,7 +143,7 @@ void drawHistogramPlot(ViewContext& context, HistogramCache& cache, const Histog
     editBrushes(cache.drag, context.session.selection, frame, channels, {BrushTool::Rectangle, view.softness});
     clearAfterQuestion(cache.drag, context);
     if (cache.drag.active) context.interacting = true;
-    drawPlot(draw, plot, frame, tall);
+    drawPlot(draw, plot, frame, tall, 0, true);
     drawBrushes(draw, context.session.selection, frame, channels);
     drawAxis(draw, frame, AxisSide::Bottom, tall ? channel.name : "", tall ? channel.unit : "", origin.x,
              origin.x + room.x);
@@ -159,8 +172,9 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                          bands = brushedBands(context.session.selection, {channel.name, {}}),
                          at = sharedReadout(context).value(channel.name)](const PageForm& form, const Progress&) {
                             const volume::Histogram& histogram = result->statistics.channels.front().histogram;
-                            Plot plot = histogramPlot(channel, histogram.range, &histogram, look);
+                            Plot plot = histogramPlot(channel, histogram.range, &histogram, onPage(look, form.dark));
                             plot.brushed = bands;
+                            for (PlotBand& band : plot.brushed) band.color *= form.dark ? 1 : kOnWhite;
                             plot.cursorX = at;
                             return plotPage({plot}, 1, form);
                         },

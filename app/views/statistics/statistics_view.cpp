@@ -95,7 +95,11 @@ Table statisticsTable(const volume::DatasetInfo& info, const StatisticsResult& r
         for (std::size_t i = 0; i < form.shown; ++i)
             for (const Part& part : parts) {
                 const volume::JointHistogram* joint = jointOf(result.statistics, i, with);
-                column.numbers.push_back(i == with ? 1 : joint ? joint->*part.correlation : std::nan(""));
+                const bool any = (result.statistics.channels[i].*part.summary).samples > 0;
+                column.numbers.push_back(!any        ? std::nan("")
+                                         : i == with ? 1
+                                         : joint     ? joint->*part.correlation
+                                                     : std::nan(""));
             }
         column.resolutions.assign(column.numbers.size(), 0.001);
     }
