@@ -1,5 +1,5 @@
-#include "bench/bench.h"
 #include "app/command/command.h"
+#include "bench/bench.h"
 #include "volume/base/error.h"
 #include "volume/system/free_memory.h"
 

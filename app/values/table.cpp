@@ -50,14 +50,15 @@ std::string numberCell(const TableColumn& column, std::size_t row) {
     return {};
 }
 
-/// A field of a CSV file. Numbers of up to 15 digits are whole, others have nine: as many as a float has.
+/// A field of a CSV file. Whole numbers and those of up to twelve digits are written in full, others with nine digits:
+/// as many as a float has.
 std::string fieldOf(const TableColumn& column, std::size_t row) {
     if (!column.texts.empty()) return csvField(column.texts[row]);
     const double value = column.numbers[row];
     if (std::isnan(value)) return {};
     if (column.kind == NumberKind::Flag) return value != 0 ? "yes" : "no";
     if (std::abs(value) < 1e15 && value == std::round(value)) return printedNumber("%.0f", value);
-    const std::string text = printedNumber("%.15g", value);
+    const std::string text = printedNumber("%.12g", value);
     return std::strtod(text.c_str(), nullptr) == value ? text : printedNumber("%.9g", value);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vis/passes/renderer.h"
 #include "tests/reference/raycast.h"
+#include "vis/passes/renderer.h"
 
 #include <memory>
 #include <vector>

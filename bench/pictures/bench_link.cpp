@@ -1,7 +1,7 @@
-#include "bench/data/enlarged_cell.h"
-#include "bench/pictures/timed_workbench.h"
 #include "app/data/apply_layout.h"
 #include "app/queries/statistics_query.h"
+#include "bench/data/enlarged_cell.h"
+#include "bench/pictures/timed_workbench.h"
 #include "volume/sources/memory_source.h"
 
 #include <chrono>

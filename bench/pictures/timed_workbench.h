@@ -1,8 +1,8 @@
 #pragma once
 
-#include "bench/bench.h"
 #include "app/platform/gui.h"
 #include "app/workbench/workbench.h"
+#include "bench/bench.h"
 #include "vis/gl/headless.h"
 
 #include <condition_variable>

@@ -59,7 +59,8 @@ TEST_P(DrawnPageGl, ShowsWhatThePictureShows) {
 }
 
 // Views with figures of their own are in view_pages_test.cpp.
-INSTANTIATE_TEST_SUITE_P(Views, DrawnPageGl, testing::Values("", "volume", "slices", "shadowCube", "tesseract", "scatterMatrix", "compare"),
+INSTANTIATE_TEST_SUITE_P(Views, DrawnPageGl,
+                         testing::Values("", "volume", "slices", "shadowCube", "tesseract", "scatterMatrix", "compare"),
                          [](const auto& made) { return *made.param ? std::string(made.param) : "window"; });
 
 // Read by another reader of ImGui's triangles.

@@ -1,5 +1,7 @@
 #include "app/data/open.h"
+#include "app/dialogs/picture_request.h"
 #include "app/history/session_file.h"
+#include "app/platform/headless.h"
 #include "codec/pack/pack.h"
 #include "tests/app/beacon.h"
 
@@ -51,6 +53,20 @@ protected:
         const std::string line =
             "cd '" + folder.string() + "' && '" TESSERA_BINARY_DIR "/tessera' " + command + " > /dev/null 2> err.txt";
         ASSERT_EQ(std::system(line.c_str()), 0) << command << '\n' << text("err.txt");
+    }
+    /// The figure that Export writes of a view, as SVG.
+    std::string exported(const ViewState& view) {
+        document.session.views = {{"pane", view}};
+        document.history.reset(document.session);
+        OpenRequest request;
+        request.paths = {in("beacon.tsr")};
+        std::string svg;
+        PictureMaker().render(document, open(request).sources(), pictureRequest(PictureForm{}, "pane"),
+                              [&](const Workbench& workbench) {
+                                  const ViewExport* offered = workbench.exported("pane");
+                                  if (offered && offered->figure) svg = svgOf(offered->figure({}, {}));
+                              });
+        return svg;
     }
     std::string text(const std::string& name) const {
         std::ifstream file(in(name), std::ios::binary);
@@ -171,8 +187,7 @@ std::optional<glm::dvec2> brightIn(const vis::Image& image) {
 TEST_F(OrientationOfFiles, FiguresOfSlicesAreThoseOfTheirAxes) {
     document.session.time = 1;
     document.session.cursor = beacon::position(1);
-    run("render s.tessera.json --view slices -o out.svg", SlicesView{});
-    const std::vector<Embedded> slices = imagesOf(text("out.svg"));
+    const std::vector<Embedded> slices = imagesOf(exported(SlicesView{}));
     ASSERT_EQ(slices.size(), 3u);
     constexpr int kAxes[3][2] = {{0, 1}, {2, 1}, {0, 2}};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -189,8 +204,7 @@ TEST_F(OrientationOfFiles, FiguresOfSlicesAreThoseOfTheirAxes) {
     matrix.channels = {"beacon"};
     matrix.planes = 2;
     document.session.time = 0;
-    run("render s.tessera.json --view sliceMatrix -o out.svg", matrix);
-    const std::vector<Embedded> planes = imagesOf(text("out.svg"));
+    const std::vector<Embedded> planes = imagesOf(exported(matrix));
     ASSERT_EQ(planes.size(), 2u);
     const auto middle = brightIn(planes[0].image);
     ASSERT_TRUE(middle);
@@ -234,8 +248,7 @@ TEST_F(OrientationOfFiles, FiguresOfScatterplotsHaveLowValuesAtTheLowerLeft) {
     ScatterMatrixView view;
     view.channels = {"a", "b"};
     view.bins = 16;
-    run("render s.tessera.json --view scatterMatrix -o out.svg", view);
-    const std::vector<Embedded> images = imagesOf(text("out.svg"));
+    const std::vector<Embedded> images = imagesOf(exported(view));
     ASSERT_EQ(images.size(), 1u);
     const vis::Image& image = images[0].image;
     ASSERT_EQ(image.size, glm::ivec2(16));

@@ -255,11 +255,13 @@ TEST_F(Orientation, OfHistogramsIsBarsThatStandOnTheirValues) {
         const beacon::Pixels pixels{image};
         Area area{image.size, {0, 0}};
         for (int y = 0; y < image.size.y; ++y)
-            for (int x = 2; x + 2 < image.size.x; ++x)
-                if (pixels.bright(x - 2, y) && pixels.bright(x, y) && pixels.bright(x + 2, y)) {
-                    area.min = glm::min(area.min, glm::ivec2(x - 2, y));
-                    area.max = glm::max(area.max, glm::ivec2(x + 3, y + 1));
-                }
+            for (int x = 3; x + 3 < image.size.x; ++x) {
+                bool bar = true; // and no letter of the names
+                for (int near = x - 3; near <= x + 3; ++near) bar = bar && pixels.bright(near, y);
+                if (!bar) continue;
+                area.min = glm::min(area.min, glm::ivec2(x - 3, y));
+                area.max = glm::max(area.max, glm::ivec2(x + 4, y + 1));
+            }
         return area;
     };
     const Area low = barOf(1, 3), high = barOf(9, 11);

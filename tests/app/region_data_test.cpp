@@ -1,3 +1,4 @@
+#include "app/pages/plot_marks.h"
 #include "app/views/statistics/region_data.h"
 
 #include "app/data/sources.h"
@@ -111,8 +112,8 @@ TEST(RegionData, SectionsHaveUnitsAndCurvesARegionEach) {
 
     const auto panels = sectionPanels(info, curves, SectionMeasure::Flux);
     ASSERT_EQ(panels.size(), 2u);
-    EXPECT_EQ(panels[0].y.title, "flux of O2 [mol/s]");
-    EXPECT_EQ(panels[0].x.title, "z [mm]");
+    EXPECT_EQ(wholeAxisTitle(panels[0].y), "flux of O2 [mol/s]");
+    EXPECT_EQ(wholeAxisTitle(panels[0].x), "z [mm]");
     ASSERT_EQ(panels[0].series.size(), 3u);
     EXPECT_EQ(panels[0].series[2].name, "fuel");
     EXPECT_NEAR(panels[0].series[1].points[2].y, values.flux, 1e-12);
@@ -261,7 +262,7 @@ TEST(RegionData, OxygenOfTheSharedCellFallsAlongItsChannel) {
     const auto panels = sectionPanels(info, curves, SectionMeasure::Mean);
     ASSERT_EQ(panels[0].series.size(), 1u);
     EXPECT_EQ(panels[0].title, "cathode");
-    EXPECT_EQ(panels[0].x.title, "z [mm]");
+    EXPECT_EQ(wholeAxisTitle(panels[0].x), "z [mm]");
     EXPECT_EQ(panels[0].series[0].points.size(), 88u);
     EXPECT_NEAR(panels[0].series[0].points.front().y, 5.28, 0.01);
     EXPECT_NEAR(panels[0].series[0].points.back().y, 3.02, 0.01);

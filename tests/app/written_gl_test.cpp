@@ -41,7 +41,9 @@ TEST_F(WrittenViews, CurvesLieAtTheirValuesAndBreakWhereThereIsNone) {
     EXPECT_THAT(words, Contains(testing::HasSubstr("voltage [V]  0.4")));
     // Dots from the highest to the lowest, as far apart as their values; none for the second state.
     std::vector<double> heights;
-    std::vector<ImVec2> ink = drawnIn(plotColors().focus);
+    const glm::vec3 color = plotInk(0, darkTheme());
+    std::vector<ImVec2> ink = drawnIn(toColor({color.r, color.g, color.b}));
+    ASSERT_FALSE(ink.empty());
     for (const ImVec2& corner : ink) ASSERT_TRUE(std::isfinite(corner.x) && std::isfinite(corner.y));
     std::ranges::sort(ink, {}, &ImVec2::x);
     const float radius = em() * 0.3f, left = ink.front().x, right = ink.back().x;

@@ -3,8 +3,8 @@
 #include "codec/unpack/stored_dataset.h"
 #include "codec/unpack/unpack.h"
 #include "tests/fuzz/changed_archive.h"
-#include "vis/processor/processor_renderer.h"
 #include "tests/reference/raycast.h"
+#include "vis/processor/processor_renderer.h"
 #include "volume/export/export.h"
 
 #include <memory>

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "tests/reference/raycast.h"
 #include "tests/vis/wavy_data.h"
 #include "vis/packet/packet_refusal.h"
 #include "vis/packet/packet_renderer.h"
-#include "tests/reference/raycast.h"
 
 #include <cmath>
 #include <functional>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vis/optics/light_maps.h"
 #include "tests/reference/samples.h"
+#include "vis/optics/light_maps.h"
 
 namespace tessera::vis::reference {
 

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "tests/reference/options.h"
 #include "vis/optics/adaptive_step.h"
 #include "vis/optics/look_sample.h"
 #include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/optics/shade.h"
-#include "tests/reference/options.h"
 
 #include <map>
 #include <memory>

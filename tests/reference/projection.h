@@ -1,7 +1,7 @@
 #pragma once
 
-#include "vis/optics/projection_sums.h"
 #include "tests/reference/prepared.h"
+#include "vis/optics/projection_sums.h"
 
 #include <optional>
 

@@ -1,6 +1,6 @@
+#include "tests/reference/samples.h"
 #include "tests/vis/parts_scene.h"
 #include "vis/raycast/ray_plan.h"
-#include "tests/reference/samples.h"
 #include "volume/reconstruct/part_choice.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
+#include "tests/reference/raycast.h"
 #include "tests/vis/function_source.h"
 #include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
-#include "tests/reference/raycast.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>

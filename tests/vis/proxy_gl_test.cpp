@@ -1,6 +1,6 @@
+#include "tests/reference/raycast.h"
 #include "tests/vis/function_source.h"
 #include "tests/vis/gl_fixture.h"
-#include "tests/reference/raycast.h"
 #include "vis/shapes/proxy.h"
 
 #include <cmath>

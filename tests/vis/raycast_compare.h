@@ -1,12 +1,12 @@
 #pragma once
 
+#include "tests/reference/raycast.h"
 #include "tests/vis/wavy_data.h"
 #include "vis/gl/headless.h"
 #include "vis/image/image_io.h"
 #include "vis/image/light_picture.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/passes/renderer.h"
-#include "tests/reference/raycast.h"
 
 #include <algorithm>
 #include <cmath>

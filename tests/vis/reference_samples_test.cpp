@@ -1,5 +1,5 @@
-#include "tests/vis/function_source.h"
 #include "tests/reference/samples.h"
+#include "tests/vis/function_source.h"
 #include "volume/reconstruct/reconstruct.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "tests/vis/function_source.h"
-#include "vis/optics/ray_setup.h"
 #include "tests/reference/raycast.h"
 #include "tests/reference/samples.h"
+#include "tests/vis/function_source.h"
+#include "vis/optics/ray_setup.h"
 
 #include <algorithm>
 #include <cmath>
