@@ -133,10 +133,11 @@ private:
     double numbersBeside() const {
         double widest = 0;
         for (const Plot& plot : plots_)
-            for (const std::string& text :
-                 plot.y.numbered ? tickLabels(plot.y.range, 5).texts : std::vector<std::string>{})
-                widest = std::max(widest, pageTextWidth(text, form_.text));
-        return widest + 6 * scale_;
+            for (const int most : {3, 5, 8, 12}) // more numbers may have more digits
+                for (const std::string& text :
+                     plot.y.numbered ? tickLabels(plot.y.range, most).texts : std::vector<std::string>{})
+                    widest = std::max(widest, pageTextWidth(text, form_.text));
+        return widest + 8 * scale_;
     }
     double widestTitle(bool below) const {
         double widest = 0;

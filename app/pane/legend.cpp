@@ -40,7 +40,8 @@ float legendStripHeight() {
     return std::round(em() * 0.65f);
 }
 
-void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function, bool withOpacity) {
+void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function, bool withOpacity,
+                    Range range) {
     const PlotColors colors = plotColors();
     if (withOpacity) {
         const float cell = std::max(3.0f, (max.y - min.y) / 3);
@@ -52,7 +53,8 @@ void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::Transfe
             }
     }
     const auto color = [&](int i) {
-        const glm::dvec4 c = vis::evaluate(function, {0, 1}, static_cast<double>(i) / kStripParts);
+        const double value = std::lerp(range.lo, range.hi, static_cast<double>(i) / kStripParts);
+        const glm::dvec4 c = vis::evaluate(function, range, value);
         return toColor({c.r, c.g, c.b}, withOpacity ? c.a : 1);
     };
     for (int i = 0; i < kStripParts; ++i) {
@@ -95,7 +97,7 @@ void drawLegendStrip(ImDrawList& draw, ImVec2 lo, ImVec2 hi, const LegendEntry& 
     else if (entry.regions)
         drawRegionStrip(draw, lo, hi, entry.function);
     else
-        drawColorStrip(draw, lo, hi, entry.function);
+        drawColorStrip(draw, lo, hi, entry.function, false, entry.names.empty() ? Range{0, 1} : entry.range);
 }
 
 float legendArrow() {
@@ -167,7 +169,8 @@ void drawLegendColumn(ImDrawList& draw, ImVec2 min, float height, const LegendEn
     const float width = em() * kColumn, line = ImGui::GetFontSize();
     const int steps = std::max(1, static_cast<int>(height));
     for (int i = 0; i < steps; ++i) {
-        const glm::dvec4 c = vis::evaluate(entry.function, {0, 1}, 1 - (i + 0.5) / steps);
+        const Range range = paddedRange(entry.range);
+        const glm::dvec4 c = vis::evaluate(entry.function, range, std::lerp(range.hi, range.lo, (i + 0.5) / steps));
         const float y = min.y + height * static_cast<float>(i) / static_cast<float>(steps);
         draw.AddRectFilled({min.x, y}, {min.x + width, y + height / static_cast<float>(steps)},
                            toColor({c.r, c.g, c.b}));

@@ -35,9 +35,9 @@ struct LegendEntry {
 };
 
 /// A horizontal strip of a colour map between two pixels, left = lowest value; opacity over a chequered ground if
-/// wanted.
+/// wanted. `range`: of the values, which the colours of labels follow.
 void drawColorStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function,
-                    bool withOpacity = false);
+                    bool withOpacity = false, Range range = {0, 1});
 
 /// The same in the colours of the function's regions; bare where none has the value.
 void drawRegionStrip(ImDrawList& draw, ImVec2 min, ImVec2 max, const vis::TransferFunction& function);

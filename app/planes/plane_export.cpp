@@ -234,6 +234,9 @@ Table planesTable(const volume::BrickSource& source, const std::vector<PlanePict
 void exportPlanes(ViewContext& context, ToolRow& tools, const std::string& name, std::vector<PlanePicture> pictures,
                   int columns, std::vector<int> channels) {
     const auto source = context.numbers;
+    for (const PlanePicture& picture : pictures) // what is seen is in the table, too
+        if (std::ranges::find(channels, picture.shows.channel) == channels.end())
+            channels.push_back(picture.shows.channel);
     const auto shown = std::make_shared<const std::vector<PlanePicture>>(std::move(pictures));
     exportMenu(context, tools,
                {.name = name,

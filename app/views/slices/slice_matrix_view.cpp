@@ -101,7 +101,11 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
         return drawHint("No extent", "The data have no extent within these planes.");
 
     const float title = em() * 1.5f, gap = em() * 0.4f, head = em() * 1.3f;
-    const float legend = ImGui::GetContentRegionAvail().x < em() * 20 ? 0 : em() * 5;
+    float legend = 0;
+    if (ImGui::GetContentRegionAvail().x >= em() * 20)
+        for (const int channel : shown)
+            legend =
+                std::max({legend, em() * 5, legendColumnWidth(legendOf(context.session, info, channel)) + em() * 0.5f});
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     const ImVec2 room{ImGui::GetContentRegionAvail().x,
                       heightAtLeast(head + (em() * 1.8f + gap) * static_cast<float>(shown.size()))};

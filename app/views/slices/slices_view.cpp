@@ -87,10 +87,12 @@ SliceRoom roomOfSlice(const ThreeSlices& slices, const SliceLayout& layout, std:
 }
 
 /// Pixels per world length of a slice; those that share an axis have one scale.
-double scaleOfSlice(const ThreeSlices& slices, const SliceLayout& layout, std::size_t index) {
+double scaleOfSlice(const ThreeSlices& slices, const SliceLayout& layout, std::size_t index, bool takesInput) {
     const auto own = [&](std::size_t i) {
         const SliceRoom room = roomOfSlice(slices, layout, i);
-        return planeScale(slices[i], room.lo, room.hi, leastPicture(layout, em()));
+        // On paper a small picture is better than none.
+        const float least = takesInput ? leastPicture(layout, em()) : 2.0f;
+        return planeScale(slices[i], room.lo, room.hi, least);
     };
     double scale = own(index);
     for (std::size_t other = 0; other < slices.size(); ++other)
@@ -130,7 +132,7 @@ void drawSliceAtCursor(ViewContext& context, PlaneState& state, const std::strin
                        const SliceLayout& layout, std::size_t index) {
     const volume::DatasetInfo& info = context.source->info();
     SliceRoom room = roomOfSlice(slices, layout, index);
-    const double scale = scaleOfSlice(slices, layout, index);
+    const double scale = scaleOfSlice(slices, layout, index, context.takesInput());
     if (!(scale > 0)) {
         const PlanePicture& slice = slices[index];
         if (context.decoration.title && !layout.beside[index]) drawSliceTitle(room, slice, info, nullptr, layout.axes);
