@@ -254,13 +254,13 @@ TEST_F(Orientation, OfHistogramsIsBarsThatStandOnTheirValues) {
         const vis::Image image = picture(start, {400, 300});
         const beacon::Pixels pixels{image};
         Area area{image.size, {0, 0}};
-        for (int y = 0; y < image.size.y; ++y)
-            for (int x = 3; x + 3 < image.size.x; ++x) {
+        for (int y = 0; y + 2 < image.size.y; ++y)
+            for (int x = 2; x + 2 < image.size.x; ++x) {
                 bool bar = true; // and no letter of the names
-                for (int near = x - 3; near <= x + 3; ++near) bar = bar && pixels.bright(near, y);
+                for (int near = 0; near < 15; ++near) bar = bar && pixels.bright(x - 2 + near % 5, y + near / 5);
                 if (!bar) continue;
-                area.min = glm::min(area.min, glm::ivec2(x - 3, y));
-                area.max = glm::max(area.max, glm::ivec2(x + 4, y + 1));
+                area.min = glm::min(area.min, glm::ivec2(x - 2, y));
+                area.max = glm::max(area.max, glm::ivec2(x + 3, y + 3));
             }
         return area;
     };
