@@ -282,11 +282,6 @@ glm::dvec2 plotArea(const std::vector<Plot>& plots, int columns, const PageForm&
     return PlotLayout(plots, form, form.size, shared).best(columns, 0).plot;
 }
 
-bool plotsFit(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared) {
-    const glm::dvec2 area = plotArea(plots, columns, form, shared);
-    return area.x >= kLeastPlot.x && area.y >= kLeastPlot.y;
-}
-
 VectorPage plotPage(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared) {
     PlotGrid grid = PlotLayout(plots, form, form.size, shared).best(columns, 0);
     const SeriesLists lists = placeLists(plots, grid, form);

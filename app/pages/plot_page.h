@@ -16,9 +16,6 @@ inline constexpr glm::dvec2 kFigurePlot{226, 176};
 /// texts leave no room for the plots.
 VectorPage plotPage(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared = false);
 
-/// Whether plots have room on that page.
-bool plotsFit(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared = false);
-
 /// What is between the axes of each plot of that page, in points, where no list of series takes room.
 glm::dvec2 plotArea(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared = false);
 

@@ -177,8 +177,6 @@ VectorPage planesPage(const volume::BrickSource& source, const std::vector<Plane
         if (last && !hasLabels(source.info(), channel))
             plots.back().key = colorKey(pictures[i].function, pictures[i].range);
     }
-    if (!plotsFit(plots, columns, form)) // titles say the range of the colours, too
-        for (Plot& plot : plots) plot.key = {};
     const glm::dvec2 size = plotArea(plots, columns, form);
     const glm::ivec2 cells =
         glm::clamp(form.size.x > 0 ? glm::ivec2(size * kCellsPerPoint) : glm::ivec2(0), kPageCells, kMostCells);

@@ -5,6 +5,7 @@
 #include "app/ui/time_text.h"
 #include "volume/base/error.h"
 #include "volume/field/time_pair.h"
+#include "volume/flow/flow_channels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -144,6 +145,18 @@ volume::Curves readCurves(const volume::BrickSource& source, const NumberOrigin&
     return volume::computeCurves(source, query, progress);
 }
 
+namespace {
+
+/// What statistics are of: ", in anode channel, of the selection"; "": everything.
+std::string placeOf(const volume::DatasetInfo& info, const PlotCurvesQuery& asked) {
+    std::string text;
+    for (const int value : asked.regions)
+        text += (text.empty() ? ", in " : " and ") + volume::labelName(volume::parameterOf(info, asked.label), value);
+    return text + (asked.brushes.selection.active() ? ", of the selection" : "");
+}
+
+} // namespace
+
 std::string curvesOrigin(const volume::DatasetInfo& info, const NumberOrigin& origin, const PlotCurvesQuery& asked) {
     std::vector<int> channels;
     const auto count = int(info.channels().size());
@@ -155,9 +168,10 @@ std::string curvesOrigin(const volume::DatasetInfo& info, const NumberOrigin& or
     }
     for (const std::string& formula : asked.y) integrals = integrals || formula.find("integral(") != formula.npos;
     if (channels.empty() || integrals || asked.brushes.selection.active() || asked.regions.size() > 1)
-        return originText(origin, info, channels);
+        return originText(origin, info, channels) + (channels.empty() ? "" : placeOf(info, asked));
     return originText(origin, info, channels,
-                      knownStatistics(origin, info, channels, labelOf(info, asked), info.times));
+                      knownStatistics(origin, info, channels, labelOf(info, asked), info.times)) +
+           placeOf(info, asked);
 }
 
 std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves) {

@@ -183,6 +183,8 @@ void drawBalance(ViewContext& context, ToolRow& tools, const std::string& pane, 
         return failure.empty() ? ImGui::TextDisabled("Computing...") : drawHint("No balance", failure.c_str());
     }
     const auto table = std::make_shared<Table>(tableOf(balanceTable(info, *balance)));
+    table->notes.insert(table->notes.begin(),
+                        "balance of " + info.channel(channel).name); // no column for people says it
     const std::string origin = originText(context.origin, info, {channel}, {isKnown(context.origin, info, query)});
     exportMenu(context, tools, exportOf("balance", table), true, origin);
     drawOriginText(context, tools, origin);
