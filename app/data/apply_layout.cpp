@@ -169,7 +169,7 @@ Session changeLayout(const SessionDocument& layout, const volume::BrickSource& s
     next.cursor = shown.cursor;
     keepOwnBrushes(next, shown, messages);
     const auto refit = [&](vis::Camera& camera) {
-        vis::fit(camera, vis::worldFrame(source.info().bounds, next.stretch), firstAspect(source.info()));
+        vis::fit(camera, vis::worldFrame(source.info(), next.stretch), firstAspect(source.info()));
     };
     if (!sameData(layout.session.data, shown.data)) {
         refit(next.camera);

@@ -210,7 +210,7 @@ double firstAspect(const volume::DatasetInfo& info) {
 
 void aimFirstView(Session& session, const volume::BrickSource& source, double aspect) {
     const volume::DatasetInfo& info = source.info();
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     if (session.camera.orientation == vis::Camera{}.orientation)
         session.camera.orientation = vis::firstOrientation(world);
     vis::fit(session.camera, world, aspect);

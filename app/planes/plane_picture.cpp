@@ -66,7 +66,7 @@ PlanePicture axisPlane(const Session& session, const volume::DatasetInfo& info, 
     picture.axes = axes;
     picture.x = {info.bounds.lo[right], info.bounds.hi[right]};
     picture.y = {info.bounds.lo[up], info.bounds.hi[up]};
-    const glm::dvec3 half = vis::worldFrame(info.bounds, session.stretch).halfSize;
+    const glm::dvec3 half = vis::worldFrame(info, session.stretch).halfSize;
     picture.size = 2.0 * glm::dvec2(half[right], half[up]);
     picture.corners = planeSection(picture.plane.plane(), info.bounds);
     picture.right = labels[static_cast<std::size_t>(right)];
@@ -80,7 +80,7 @@ PlanePicture axisPlane(const Session& session, const volume::DatasetInfo& info, 
 PlanePicture tiltedPlane(const Session& session, const volume::DatasetInfo& info, glm::dvec3 normal,
                          const PlaneContent& shows) {
     const double size = glm::length(info.bounds.size()), same = kSameOffset * std::max(size, 1e-300);
-    const FlatAxes axes = flatAxes(normal, vis::worldFrame(info.bounds, session.stretch));
+    const FlatAxes axes = flatAxes(normal, vis::worldFrame(info, session.stretch));
     const glm::dvec3 way = unitNormal(normal);
     const double offset = std::round(glm::dot(way, session.cursor) / same) * same;
     PlanePicture picture;

@@ -16,7 +16,7 @@ void addObliqueSlices(vis::Scene& scene, const Session& session, const volume::D
         const auto channel = view && view->inSpace ? resolveChannel(info, session, view->channel) : std::nullopt;
         if (!channel) continue;
         vis::SliceLayer slice =
-            obliqueLayer(*view, info.channel(*channel).name, vis::worldFrame(info.bounds, session.stretch));
+            obliqueLayer(*view, info.channel(*channel).name, vis::worldFrame(info, session.stretch));
         scene.layers.push_back({.name = pane, .visible = true, .technique = slice});
     }
 }

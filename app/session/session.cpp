@@ -78,7 +78,7 @@ vis::Scene sceneOf(const Session& session) {
 }
 
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info) {
-    const vis::WorldFrame frame = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame frame = vis::worldFrame(info, session.stretch);
     return {vis::placeLenses(session.lenses, frame, session.camera, session.cursor), frame};
 }
 
@@ -159,7 +159,7 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
     session.time = info.times.empty() ? 0 : info.times.front();
     session.stretch = defaultStretch(info.bounds);
     // The sphere around the box just fits between the upper and lower edge.
-    const double radius = glm::length(vis::worldFrame(info.bounds, session.stretch).halfSize);
+    const double radius = glm::length(vis::worldFrame(info, session.stretch).halfSize);
     const double half = glm::radians(static_cast<double>(session.camera.fieldOfView)) / 2;
     session.camera.distance = static_cast<float>(std::max(0.5, radius / std::sin(half)));
     const std::string channel = firstChannel(info);

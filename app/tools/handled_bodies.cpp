@@ -126,7 +126,7 @@ void addBody(std::vector<HandledObject>& objects, const Session& session, const 
              std::size_t index) {
     const vis::Clip& clip = session.clips[index];
     if (!clip.enabled || clip.kind == vis::ClipKind::Plane) return;
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     const vis::PlacedClip body = vis::placeClips({clip}, world).front();
     const glm::dvec3 middle = world.toPhysical(body.center);
     HandledObject object;

@@ -50,7 +50,7 @@ void aimLight(vis::Light& light, glm::dvec3 from, const vis::Camera& camera) {
 
 void addFocus(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info) {
     if (!(session.camera.aperture > 0)) return;
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     HandledObject object;
     object.key = object.name = "focus";
     object.task = SceneTask::Picture;
@@ -64,7 +64,7 @@ void addFocus(std::vector<HandledObject>& objects, const Session& session, const
 }
 
 void addLights(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info) {
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     const vis::Camera& camera = session.camera;
     const glm::dvec3 target(camera.target);
     const double half = std::tan(glm::radians(static_cast<double>(camera.fieldOfView)) / 2);

@@ -19,7 +19,7 @@ HandledObject planeObject(const Session& session, const volume::DatasetInfo& inf
     object.outlined = true;
     object.plane = plane;
     // Upright on the plane as it is seen, in the stretched world.
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     const double length = kTiltArrow * static_cast<double>(session.camera.distance);
     const glm::dvec3 tip = world.toPhysical(world.toWorld(plane.at) + worldNormal(plane.normal, world) * length);
     object.handles = {{.at = plane.at, .whole = true, .how = HandleWay::Along, .way = tip - plane.at}};
@@ -69,7 +69,7 @@ void addSlice(std::vector<HandledObject>& objects, const Session& session, const
     const auto* slice = std::get_if<vis::SliceLayer>(&layer.technique);
     const bool tilts = slice && slice->orientation == vis::SliceOrientation::Oblique;
     if (!slice || !layer.visible || (slice->atCursor && !tilts)) return;
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     const vis::Plane placed = vis::slicePlane(*slice, world, session.cursor);
     const glm::dvec3 normal = physicalNormal(placed.normal, world);
     glm::dvec3 middle = session.cursor;
@@ -101,7 +101,7 @@ void addClip(std::vector<HandledObject>& objects, const Session& session, const 
     const vis::Clip& clip = session.clips[index];
     const glm::dvec3 lo = info.bounds.lo, size = info.bounds.size();
     if (!clip.enabled || clip.kind != vis::ClipKind::Plane || !(std::min({size.x, size.y, size.z}) > 0)) return;
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     const glm::dvec3 axis = glm::length(glm::dvec3(clip.axis)) > 1e-9 ? glm::dvec3(clip.axis) : glm::dvec3(1, 0, 0);
     HandledObject object =
         planeObject(session, info, {physicalNormal(axis, world), lo + glm::dvec3(clip.center) * size}, true);

@@ -196,7 +196,7 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
 } // namespace
 
 vis::Lens newLens(const Session& session, const volume::DatasetInfo& info, vis::LensEffect effect) {
-    const glm::dvec3 half = vis::worldFrame(info.bounds, session.stretch).halfSize;
+    const glm::dvec3 half = vis::worldFrame(info, session.stretch).halfSize;
     const double middle = half.x + half.y + half.z - std::max({half.x, half.y, half.z}) -
                           std::min({half.x, half.y, half.z}); // the second largest
     vis::Lens lens;

@@ -13,7 +13,7 @@ glm::dvec3 facingNormal(const Session& session, const volume::DatasetInfo& info)
     const VolumeView* view = volumeView(session, volumePane(session));
     const vis::Camera& camera = view && view->camera ? *view->camera : session.camera;
     const glm::dvec3 back = glm::conjugate(glm::normalize(glm::dquat(camera.orientation))) * glm::dvec3(0, 0, 1);
-    return physicalNormal(back, vis::worldFrame(info.bounds, session.stretch));
+    return physicalNormal(back, vis::worldFrame(info, session.stretch));
 }
 
 void drawTiltMenu(const Session& session, const volume::DatasetInfo& info, ObliqueView& view) {

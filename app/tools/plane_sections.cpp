@@ -78,7 +78,7 @@ std::vector<PlaneSection> planeSections(const Session& session, const volume::Da
         made->color = brush.color;
         made->faint = !brush.enabled;
     }
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     const glm::dvec3 right = glm::normalize(plane.right * world.scale), up = glm::normalize(plane.up * world.scale);
     eachLens(session, world, [&](int, const vis::Lens& lens, const vis::PlacedLens& placed) {
         std::vector<glm::dvec3> points = lensSection(placed, world.toWorld(plane.at), right, up);

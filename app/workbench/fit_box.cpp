@@ -111,7 +111,7 @@ void showWholeBox(Session& session, const volume::DatasetInfo& info, float scale
     if (window.size.x <= 0 || window.size.y <= 0 || scale <= 0) return;
     // Text and bars are still drawn at the old scale: the window is measured in what will be its pixels.
     window.size = {window.size.x * scale / next, window.size.y * scale / next};
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     for (const auto& [pane, view] : session.views) {
         if (std::holds_alternative<VolumeView>(view)) {
             const double aspect = aspectOf(window, session, pane);

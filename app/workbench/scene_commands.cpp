@@ -158,9 +158,8 @@ std::vector<Command> focusCommands(Workbench& workbench) {
              .run =
                  [&workbench, camera] {
                      const Session& session = workbench.session();
-                     focusOn(
-                         camera(),
-                         vis::worldFrame(workbench.document().info().bounds, session.stretch).toWorld(session.cursor));
+                     focusOn(camera(),
+                             vis::worldFrame(workbench.document().info(), session.stretch).toWorld(session.cursor));
                  },
              .enabled = loaded}};
 }

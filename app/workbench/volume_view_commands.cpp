@@ -53,7 +53,7 @@ constexpr float kLeastCell = 66000; ///< square design pixels of a view among ma
 void showMultiples(Workbench& workbench, std::vector<VolumeView> views, Session session, const std::string& step) {
     const float scale = workbench.look().scale();
     const std::string from = volumePane(session);
-    const vis::WorldFrame world = vis::worldFrame(workbench.document().info().bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(workbench.document().info(), session.stretch);
     if (const VolumeView* view = volumeView(session, from); view && view->camera) session.camera = *view->camera;
     const glm::dvec2 extent = boxExtent(session.camera, world);
     const DockNode* const place = placeOfMultiples(session, from);

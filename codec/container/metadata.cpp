@@ -264,13 +264,13 @@ bool isOf(const Metadata& metadata) {
     if (stored.kind != expected.kind || stored.size != expected.size) return false;
     const glm::dvec3 last(stored.size - 1), slack = expected.spacing * 1e-3 + 1e-9 * glm::abs(expected.origin);
     const glm::dvec3 first = glm::abs(stored.origin - expected.origin),
-                     end = glm::abs(stored.fromCells(last) - expected.fromCells(last));
+                     end = glm::abs(stored.sheetOfCells(last) - expected.sheetOfCells(last));
     return glm::all(glm::lessThanEqual(first, slack)) && glm::all(glm::lessThanEqual(end, slack));
 }
 
 /// Whether bounds can be those of samples on a lattice: they begin and end within a cell of the outermost ones.
 bool areOf(const volume::Box& bounds, const volume::Lattice& lattice) {
-    const glm::dvec3 lo = lattice.position({0, 0, 0}), hi = lattice.position(lattice.size - 1);
+    const glm::dvec3 lo = lattice.sheetPosition({0, 0, 0}), hi = lattice.sheetPosition(lattice.size - 1);
     for (int axis = 0; axis < 3; ++axis) {
         const double slack = lattice.spacing[axis] + 1e-9 * (std::abs(lo[axis]) + std::abs(hi[axis]));
         const bool near =

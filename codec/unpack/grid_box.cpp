@@ -18,7 +18,7 @@ using volume::ScalarType;
 
 /// A box of a grid as a grid of its own.
 Lattice boxOf(Lattice grid, glm::ivec3 begin, glm::ivec3 end) {
-    grid.origin = grid.position(begin);
+    grid.origin = grid.sheetPosition(begin);
     grid.size = end - begin;
     return grid;
 }

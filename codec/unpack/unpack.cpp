@@ -33,7 +33,8 @@ Field levelField(const volume::BrickSource& source, int channel, int time, int l
     Lattice lattice;
     lattice.size = {whole.x, whole.y, (whole.z + step - 1 - sublattice) / step};
     lattice.spacing = grid.lattice.spacing * double(scale);
-    lattice.origin = grid.lattice.fromCells(glm::dvec3(grid.levelPhase(level) + 0.5 * sublattice));
+    lattice.axes = grid.lattice.axes;
+    lattice.origin = grid.lattice.sheetOfCells(glm::dvec3(grid.levelPhase(level) + 0.5 * sublattice));
     Field field = volume::makeField(lattice, ScalarType::F32);
     volume::Mask mask(field.count(), 1);
     const auto values = field.as<float>();

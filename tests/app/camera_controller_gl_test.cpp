@@ -21,7 +21,7 @@ protected:
         source = volume::makeMemorySource(formula::makeCell(), {.lattice = volume::LatticeKind::BCC});
         renderer.setSource(source);
         session = defaultSession(source->info(), {});
-        world = vis::worldFrame(source->info().bounds, session.stretch);
+        world = vis::worldFrame(source->info(), session.stretch);
         camera().target = {0.05f, -0.02f, 0.1f};
         park();
     }

@@ -153,8 +153,7 @@ TEST_F(DrawnShapes, AFaceOfTheShadowCubeCoversItsCorners) {
     volume::DatasetInfo info;
     info.bounds = {glm::dvec3(0), {2, 1, 1}};
     vis::Camera camera;
-    CubeFrame frame{info,   {50, 50}, {400, 400}, vis::worldFrame(info.bounds, glm::dvec3(1)), glm::dvec3(0.5),
-                    camera, {}};
+    CubeFrame frame{info, {50, 50}, {400, 400}, vis::worldFrame(info, glm::dvec3(1)), glm::dvec3(0.5), camera, {}};
     frame.space = spaceFrame(frame.min, frame.max(), camera, info.bounds, glm::dvec3(1));
     for (const CubeFace& face : kCubeFaces) {
         feedWindow([&] { drawFace(*ImGui::GetWindowDrawList(), frame, face, 0); });
@@ -174,7 +173,7 @@ TEST_F(DrawnShapes, AFaceOfTheShadowCubeCoversItsCorners) {
 TEST_F(DrawnShapes, TheShadowCubeIsWholeWithItsTitles) {
     volume::DatasetInfo info;
     info.bounds = {glm::dvec3(0), {0.6, 1, 2.2}};
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, glm::dvec3(1));
+    const vis::WorldFrame world = vis::worldFrame(info, glm::dvec3(1));
     ShadowCubeView view;
     feedWindow([&] {
         for (const ImVec2 size : {ImVec2{446, 150}, ImVec2{150, 400}, ImVec2{600, 500}})
@@ -224,7 +223,7 @@ TEST_F(DrawnShapes, TheShadowCubeIsWholeWithItsTitles) {
 TEST_F(DrawnShapes, TitlesOfTheShadowCubeKeepClearOfTheDataAndOfEachOther) {
     volume::DatasetInfo info;
     info.bounds = {glm::dvec3(0), {0.6, 1, 2.2}};
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, glm::dvec3(1));
+    const vis::WorldFrame world = vis::worldFrame(info, glm::dvec3(1));
     const ShadowCubeView view;
     feedWindow([&] {
         const ImVec2 size{446, 180};

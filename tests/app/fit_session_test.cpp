@@ -163,7 +163,7 @@ TEST(SessionTest, DefaultStretchesThinCells) {
 
 TEST(SessionTest, DefaultCameraSeesTheSphereAroundTheData) {
     const Session session = defaultSession(cellInfo(), {});
-    const double radius = glm::length(vis::worldFrame(cellInfo().bounds, session.stretch).halfSize);
+    const double radius = glm::length(vis::worldFrame(cellInfo(), session.stretch).halfSize);
     EXPECT_NEAR(session.camera.distance * std::sin(glm::radians(double(session.camera.fieldOfView)) / 2), radius, 1e-5);
 }
 

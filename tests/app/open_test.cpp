@@ -87,7 +87,7 @@ TEST_F(OpenTest, AFirstPictureOfAScanLeavesTheBackgroundOut) {
     EXPECT_GT(curve[1].x, 9.0 / 190);
     EXPECT_LT(curve[1].x, 0.5) << "half of what lies between noise and ball";
     // Every corner of the box is in the picture.
-    const vis::WorldFrame world = vis::worldFrame(opened.source->info().bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(opened.source->info(), session.stretch);
     const glm::dmat4 matrix = vis::projectionMatrix(session.camera, 1) * vis::viewMatrix(session.camera);
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);

@@ -64,7 +64,7 @@ TEST_F(Orientation, OfVolumesIsThatOfTheCamera) {
                 session.time = beacon::kTimes[time];
                 session.camera.projection = projection;
                 session.camera.target = {0.03f, -0.05f, 0.02f};
-                const vis::WorldFrame world = vis::worldFrame(workbench.source()->info().bounds, stretch);
+                const vis::WorldFrame world = vis::worldFrame(workbench.source()->info(), stretch);
                 const glm::dvec3 place = beacon::position(time);
                 const vis::Image image = picture(session, kSize);
                 beacon::expectBrightAt(image, beacon::whole(image),
@@ -138,7 +138,7 @@ TEST_F(Orientation, OfTheWallsOfTheShadowCubeIsThatOfTheDataBeforeThem) {
     view.showAxes = false; // the cube fills the picture
     show(view, [](Session& session) { session.layers.clear(); });
     constexpr glm::ivec2 kSize{300, 420}; // the legend has its place below the cube or above it
-    const vis::WorldFrame world = vis::worldFrame(workbench.source()->info().bounds, glm::dvec3(1));
+    const vis::WorldFrame world = vis::worldFrame(workbench.source()->info(), glm::dvec3(1));
     const glm::dvec3 half = world.halfSize + double(view.gap);
     int seen = 0;
     for (const int time : {0, 1}) {

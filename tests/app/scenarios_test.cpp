@@ -227,7 +227,7 @@ TEST(Scenarios, ALensCountsWhatItHolds) {
     const vis::Lens &before = task.steps.front().lenses.front(), &after = task.last().lenses.front();
     EXPECT_GT(glm::distance(before.center, after.center), 1e-3);
     EXPECT_GT(after.size.x, before.size.x);
-    const vis::WorldFrame world = vis::worldFrame(task.info().bounds, task.last().stretch);
+    const vis::WorldFrame world = vis::worldFrame(task.info(), task.last().stretch);
     const glm::dvec3 middle = world.toWorld(after.center);
     double surely = 0, perhaps = 0, least = 1e9, most = -1e9, sum = 0;
     forEach(*task.source, {task.channel("T")}, task.info().nearestTime(task.last().time),

@@ -52,7 +52,7 @@ void ShadowCube::expectMeans(const Wall& wall, const std::function<double(double
     options.exactTextures = true;
     vis::Renderer renderer(options);
     renderer.setSource(source);
-    const vis::WorldFrame world = vis::worldFrame(info().bounds, glm::dvec3(1));
+    const vis::WorldFrame world = vis::worldFrame(info(), glm::dvec3(1));
     for (const CubeFace& face : kCubeFaces) {
         vis::Scene scene = wallScene(sceneOf(session), "v", wall, face, world, glm::vec3(0));
         scene.render.filter = vis::Filter::Average;
@@ -115,7 +115,7 @@ TEST_F(ShadowCube, FacesReadWhatTheyShow) {
             EXPECT_NEAR(read(WallKind::Maximum), most, 1e-5);
         }
     session.transfer["v"].opacity = {{0, 0.003f}, {1, 0.003f}};
-    const vis::WorldFrame world = vis::worldFrame(info().bounds, glm::dvec3(1));
+    const vis::WorldFrame world = vis::worldFrame(info(), glm::dvec3(1));
     const double absorbed =
         readWall(*source, session, 0, {.kind = WallKind::XRay}, kCubeFaces[0], {4, 4, 4}, 0).value_or(-1);
     EXPECT_NEAR(absorbed, vis::correctedOpacity(double(0.003f), 2 * world.halfSize.x, 1), 1e-9);

@@ -44,7 +44,7 @@ protected:
             const PlaneFrame cut{{{50, 50}, {450, 350}, {0, 200}, {0, 100}},
                                  page,
                                  glm::dvec2(100),
-                                 vis::worldFrame(info.bounds, session.stretch),
+                                 vis::worldFrame(info, session.stretch),
                                  info.bounds};
             edited = editHandles(drag, session, info, cut, ImGui::IsItemHovered());
             drawHandles(*ImGui::GetWindowDrawList(), drag, cut, session, info);

@@ -213,14 +213,14 @@ struct TimeAlongWorkbench : DrawnWorkbench {
 /// Half the width of what the box covers of the picture of a pane, as a share of it.
 double coveredWidth(Workbench& workbench, const std::string& pane) {
     const Session& session = workbench.session();
-    const vis::WorldFrame world = vis::worldFrame(workbench.document().info().bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(workbench.document().info(), session.stretch);
     const ImGuiWindow* const window = ImGui::FindWindowByName(("###pane." + pane).c_str());
     if (!window || !window->WasActive) return 0;
     return boxExtent(session.camera, world).x * double(window->Size.y) / double(window->Size.x);
 }
 
 TEST_F(TimeAlongWorkbench, TheBoxIsWholeInBothHalvesOfThePane) {
-    const vis::WorldFrame world = vis::worldFrame(workbench.document().info().bounds, workbench.session().stretch);
+    const vis::WorldFrame world = vis::worldFrame(workbench.document().info(), workbench.session().stretch);
     fitToPane(workbench.session(), "volume", world, 1);
     settle();
     const vis::Camera wide = workbench.session().camera;

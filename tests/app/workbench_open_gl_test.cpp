@@ -291,7 +291,7 @@ TEST_F(WorkbenchOpening, TheLayoutOfErrorsOpensTheCellBesideItsOriginals) {
 TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInTheirPanes) {
     const auto expectWhole = [&](const std::string& layout) {
         const Session& session = workbench.session();
-        const vis::WorldFrame world = vis::worldFrame(workbench.source()->info().bounds, session.stretch);
+        const vis::WorldFrame world = vis::worldFrame(workbench.source()->info(), session.stretch);
         for (const auto& [pane, view] : session.views) {
             if (!std::holds_alternative<VolumeView>(view)) continue;
             const ImGuiWindow* window = ImGui::FindWindowByName(("###pane." + pane).c_str());
@@ -356,7 +356,7 @@ std::vector<ImVec2> pictureSizes(const std::string& pane) {
 TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInComparisons) {
     const auto expectWhole = [&](const std::string& layout, std::size_t variants) {
         const Session& session = workbench.session();
-        const vis::WorldFrame world = vis::worldFrame(workbench.source()->info().bounds, session.stretch);
+        const vis::WorldFrame world = vis::worldFrame(workbench.source()->info(), session.stretch);
         const glm::dvec2 extent = boxExtent(session.camera, world);
         const std::vector<ImVec2> pictures = pictureSizes("compare");
         EXPECT_EQ(pictures.size(), variants) << layout;

@@ -16,7 +16,7 @@ struct PlaneSurface {
 /// What a rasteriser gives for planes: surfaces of each pixel, nearest first.
 PacketGeometry rasterised(const Scene& scene, const volume::DatasetInfo& info,
                           const std::vector<PlaneSurface>& planes) {
-    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const WorldFrame frame = worldFrame(info, scene.stretch);
     const std::size_t pixels = std::size_t(kSize.x) * std::size_t(kSize.y);
     PacketGeometry out{.peels = int(planes.size())};
     out.distance.resize(pixels * planes.size() * 2);

@@ -206,7 +206,7 @@ TEST(PacketSamples, AreCounted) {
     const auto data = source(LatticeKind::CC, false);
     Scene scene = wavyScene(true);
     scene.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Average})};
-    const WorldFrame frame = worldFrame(data->info().bounds, scene.stretch);
+    const WorldFrame frame = worldFrame(data->info(), scene.stretch);
     const glm::dvec3 cell = worldCell(data->grid().lattice, frame);
     std::uint64_t wanted = 0;
     for (int y = 0; y < kSize.y; ++y)

@@ -33,7 +33,7 @@ glm::dvec4 DrawnLayer::classifyPlace(double at) const {
 Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::ivec2 size, const Options& wanted)
     : scene(drawn), options(wanted), lattice(source.grid().lattice), interestOf({}) {
     const volume::DatasetInfo& info = source.info();
-    frame = worldFrame(info.bounds, scene.stretch);
+    frame = worldFrame(info, scene.stretch);
     cell = worldCell(lattice, frame);
     clips = placeClips(scene.clips, frame);
     lenses = placeLenses(scene, frame);

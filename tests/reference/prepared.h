@@ -76,7 +76,9 @@ struct Prepared {
 
     /// The position whose data are seen at a world point: physical, and in cells.
     glm::dvec3 physical(glm::dvec3 world) const { return frame.toPhysical(bend(lenses, world, frame.halfSize)); }
-    glm::dvec3 cells(glm::dvec3 world) const { return lattice.toCells(physical(world)); }
+    glm::dvec3 cells(glm::dvec3 world) const { return straightCells(bend(lenses, world, frame.halfSize)); }
+    /// The same where no lens bends the picture.
+    glm::dvec3 straightCells(glm::dvec3 world) const { return lattice.cellsOfSheet(frame.worldToSheet(world)); }
     void findSteps();
     /// The longest step in world units through a block.
     double stepAt(glm::ivec3 block) const;
@@ -102,19 +104,18 @@ struct Prepared {
     /// Gradient of a channel as displayed, per cell of the sublattice and axis, from the samples of one part.
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world, int part) const {
         const auto seen = [&](glm::dvec3 at) {
-            return of.ofPart(part, cells(frame.toWorld(lattice.origin + at * lattice.spacing)));
+            return of.ofPart(part, cells(frame.sheetToWorld(lattice.sheetOfCells(at))));
         };
-        return volume::gradient(seen, lattice.toCells(frame.toPhysical(world)),
+        return volume::gradient(seen, straightCells(world),
                                 volume::gradientStencil(lattice.kind, scene.render.gradient));
     }
     /// The same of the field smoothed over `width` voxels, from positions within the box. `narrow`: the unsmoothed one.
     glm::dvec3 smoothGradient(const Samples& of, glm::dvec3 world, int part, double width, glm::dvec3 narrow) const {
         const auto seen = [&](glm::dvec3 at) {
-            const glm::dvec3 place = frame.toWorld(lattice.origin + at * lattice.spacing);
+            const glm::dvec3 place = frame.sheetToWorld(lattice.sheetOfCells(at));
             return of.ofPart(part, cells(glm::clamp(place, -frame.halfSize, frame.halfSize)));
         };
-        return volume::smoothGradient(seen, lattice.toCells(frame.toPhysical(world)),
-                                      volume::smoothReach(lattice.kind, width), narrow);
+        return volume::smoothGradient(seen, straightCells(world), volume::smoothReach(lattice.kind, width), narrow);
     }
     /// The value of a part beside a place, within the box.
     volume::FoundValue<double, bool> beside(const Samples& of, glm::dvec3 world, int part, glm::dvec3 offset) const {

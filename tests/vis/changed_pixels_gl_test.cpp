@@ -54,7 +54,7 @@ protected:
         return drawing.renderer.readPixels(*target, size);
     }
     std::optional<Tile> changed(const Scene& before, const Scene& after) const {
-        return changedPixels(before, after, worldFrame(drawing.data->info().bounds, before.stretch), kSize);
+        return changedPixels(before, after, worldFrame(drawing.data->info(), before.stretch), kSize);
     }
 };
 

@@ -226,7 +226,7 @@ TEST(ColorByFunction, GivesTheColours) {
             if (pixel.a < 0.99) continue;
             // Parallel rays along -z through the middles of pixels.
             const Ray ray = cameraRay(scene.camera, double(kSize.x) / kSize.y, {(x + 0.5) / kSize.x * 2 - 1, 0});
-            const double at = worldFrame(data->info().bounds, scene.stretch).toPhysical(ray.origin).x / 32;
+            const double at = worldFrame(data->info(), scene.stretch).toPhysical(ray.origin).x / 32;
             if (std::abs(at - 24.5 / 32) < 0.05) continue; // coverage ends there
             const bool is = at < 0.75;
             const glm::dvec3 srgb = is        ? glm::dvec3(evaluate(function, {0, 1}, at))

@@ -193,7 +193,7 @@ TEST_P(LensPictures, OverHalfTheVolumeStitchTwoPictures) {
         first.layers = {{"", true, outer}};
         second.layers = {{"", true, inner}};
         scene.layers = {{"", true, outer}, {"", true, inner, "half"}};
-        const WorldFrame frame = worldFrame(drawing.data->info().bounds, scene.stretch);
+        const WorldFrame frame = worldFrame(drawing.data->info(), scene.stretch);
         // Its left face is at x = 0, between two columns of pixels.
         scene.lenses = {{.name = "half",
                          .shape = LensShape::Box,

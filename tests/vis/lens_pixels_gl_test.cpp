@@ -47,7 +47,7 @@ TEST_P(LensPixelsGl, BeyondALensItsLayersTakeNoSamples) {
     std::erase_if(plain.layers, [](const Layer& layer) { return !layer.lens.empty(); });
     const auto data = source(LatticeKind::BCC, true);
     const std::vector<Tile> tiles =
-        lensTiles(placeLenses(scene, worldFrame(data->info().bounds, scene.stretch)), scene, kSize).value();
+        lensTiles(placeLenses(scene, worldFrame(data->info(), scene.stretch)), scene, kSize).value();
     std::vector<std::vector<glm::vec4>> counts, pictures;
     for (const bool counting : {true, false})
         for (const Scene* each : {&scene, static_cast<const Scene*>(&plain)}) {
@@ -80,7 +80,7 @@ TEST_P(LensPixelsGl, BeyondALensItsLayersTakeNoSamples) {
 
 TEST(LensPixels, AreAnywhereWhereALensActsOutsideOfItself) {
     const Scene scene = lensedScene(true);
-    const WorldFrame frame = worldFrame(source(LatticeKind::BCC, false)->info().bounds, scene.stretch);
+    const WorldFrame frame = worldFrame(source(LatticeKind::BCC, false)->info(), scene.stretch);
     const auto known = [&](const std::function<void(Scene&)>& change) {
         Scene changed = scene;
         change(changed);

@@ -5,7 +5,7 @@ namespace {
 
 /// A level sheet above the middle of the box, `half` world units to either side: edge-on to a level view.
 GeometryLayer sheet(const Drawing& drawing, double half, double height) {
-    const WorldFrame frame = worldFrame(drawing.data->info().bounds, glm::dvec3(1));
+    const WorldFrame frame = worldFrame(drawing.data->info(), glm::dvec3(1));
     auto geometry = std::make_shared<Geometry>();
     for (const auto& [x, z] : {std::pair{-half, -half}, {half, -half}, {half, half}, {-half, half}})
         geometry->mesh.positions.emplace_back(frame.toPhysical({x, height, z}));

@@ -164,7 +164,7 @@ class Chooser {
 public:
     Chooser(const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info, const volume::BrickGrid& grid,
             const DemandSettings& settings)
-        : plan_(plan), grid_(grid), settings_(settings), frame_(worldFrame(info.bounds, scene.stretch)),
+        : plan_(plan), grid_(grid), settings_(settings), frame_(worldFrame(info, scene.stretch)),
           sight_(scene.camera, glm::max(settings.size, glm::ivec2(1))), cursor_(frame_.toWorld(scene.cursor)) {
         const glm::dvec3 voxels = worldCell(grid.lattice, frame_);
         voxel_ = std::max({voxels.x, voxels.y, voxels.z});
@@ -199,7 +199,7 @@ public:
     WorldBox box(glm::ivec3 brick) const {
         const volume::Lattice& lattice = grid_.lattice;
         const glm::dvec3 lo = glm::dvec3(brick * grid_.brickSize) - 1.0, hi = lo + double(grid_.brickSize) + 2.0;
-        const auto world = [&](glm::dvec3 cell) { return frame_.toWorld(lattice.origin + cell * lattice.spacing); };
+        const auto world = [&](glm::dvec3 cell) { return frame_.sheetToWorld(lattice.sheetOfCells(cell)); };
         return {0.5 * (world(lo) + world(hi)), 0.5 * glm::abs(frame_.scale * lattice.spacing) * (hi - lo)};
     }
     /// Marks brick i for slices that cross its box, and for fields of brushes if anything in it is visible.

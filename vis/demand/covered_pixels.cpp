@@ -29,7 +29,7 @@ std::vector<OccupiedBox> occupiedBoxes(const BlockDistances& distances, const Bl
     const double edge = double(1 << blocks.level) * blocks.edge, phase = grid.levelPhase(blocks.level);
     const auto world = [&](glm::ivec3 group) { // the lower corner
         const glm::dvec3 cells = glm::dvec3(group * kGroup) * edge + phase;
-        return frame.toWorld(grid.lattice.origin + cells * grid.lattice.spacing);
+        return frame.sheetToWorld(grid.lattice.sheetOfCells(cells));
     };
     std::vector<OccupiedBox> boxes;
     at = 0;

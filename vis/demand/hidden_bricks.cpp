@@ -98,7 +98,7 @@ std::vector<std::uint8_t> hiddenBricks(const TerminationMap& termination, const 
     const glm::ivec3 count = grid.count();
     const WorldFrame& frame = termination.frame;
     const volume::Lattice& lattice = grid.lattice;
-    const auto world = [&](glm::dvec3 cell) { return frame.toWorld(lattice.origin + cell * lattice.spacing); };
+    const auto world = [&](glm::dvec3 cell) { return frame.sheetToWorld(lattice.sheetOfCells(cell)); };
     const glm::dvec3 room = kReadBeyond * glm::abs(lattice.spacing * frame.scale);
     std::vector<std::uint8_t> hidden(std::size_t(count.x) * std::size_t(count.y) * std::size_t(count.z));
     parallelFor(std::size_t(count.y) * std::size_t(count.z), [&](std::size_t row) {

@@ -280,7 +280,7 @@ SceneLight PacketRenderer::lightOf(const Scene& scene, const CubeMap* surroundin
     SceneLight out;
     out.maps = illuminate(scene.lighting, scene.camera, surroundings).maps;
     if (!scene.lighting.shadows.any()) return out;
-    const LightGrid grid = lightGrid(worldFrame(info.bounds, scene.stretch), scene.lighting.shadows);
+    const LightGrid grid = lightGrid(worldFrame(info, scene.stretch), scene.lighting.shadows);
     Medium<float> medium(grid.count());
     fillMedium(scene, grid, 0, grid.size.y * grid.size.z, medium);
     const Medium<float> meshes = meshMedium<float>(grid, meshCasters(scene, info));

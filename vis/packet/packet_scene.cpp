@@ -307,7 +307,7 @@ unsigned octantsOf(const CastJob& job) {
 
 CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, const volume::Lattice& lattice,
                          glm::ivec2 size, double stepFactor, const PackedLight& around) {
-    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const WorldFrame frame = worldFrame(info, scene.stretch);
     CastJob job;
     job.size = size;
     const double aspect = double(size.x) / size.y;

@@ -65,8 +65,7 @@ void setPresented(RendererState& shared, const Program& resolve, const ViewTarge
 
 BoxLines boxOf(const RendererState& shared, const ViewTarget& target, const Scene& scene) {
     if (!scene.showBox || !shared.source) return {};
-    return boxLines(scene.camera, worldFrame(shared.source->info().bounds, scene.stretch).halfSize,
-                    target.buffers.size);
+    return boxLines(scene.camera, worldFrame(shared.source->info(), scene.stretch).halfSize, target.buffers.size);
 }
 
 } // namespace

@@ -186,7 +186,7 @@ std::optional<Pick> Renderer::pick(ViewTarget& target, glm::ivec2 pixel) {
                          &distance);
     if (std::abs(distance) > 1e8f) return std::nullopt;
     const Ray ray = cameraRay(target.shown.scene.camera, size.x / size.y, at / size * 2.0 - 1.0);
-    const WorldFrame frame = worldFrame(state_->source->info().bounds, target.shown.scene.stretch);
+    const WorldFrame frame = worldFrame(state_->source->info(), target.shown.scene.stretch);
     return Pick{frame.toPhysical(ray.origin + ray.direction * double(distance))};
 }
 

@@ -16,8 +16,7 @@ void showScene(RendererState& shared, ViewTarget& target, const Scene& scene, st
     if (shown.started && shown.scene == scene && shown.resident == resident && same) return;
     std::optional<Tile> part;
     if (shared.source && shown.started && target.state.presented() && same && shown.resident == resident)
-        part = changedPixels(shown.scene, scene, worldFrame(shared.source->info().bounds, scene.stretch),
-                             target.buffers.size);
+        part = changedPixels(shown.scene, scene, worldFrame(shared.source->info(), scene.stretch), target.buffers.size);
     target.redraw(part.value_or(target.buffers.everything()));
     if (!(shown.scene == scene) || !same) ++shown.number;
     target.state.setPresented(target.state.presented() && (same || shown.source == shared.formerSource));

@@ -59,8 +59,7 @@ void ProcessorPicture::draw(const Scene& scene, glm::ivec2 size, const Data& dat
             renderer_.draw(seen, pass, passes, 1, made,
                            rasterized(seen, source.info(), light, size, pixelJitter(pass)));
         }
-        if (scene.showBox)
-            lines = boxLines(scene.camera, worldFrame(source.info().bounds, scene.stretch).halfSize, size);
+        if (scene.showBox) lines = boxLines(scene.camera, worldFrame(source.info(), scene.stretch).halfSize, size);
     }
     texture_.size = size;
     texture_.rgba = presented(made, made.box, scene, lines);

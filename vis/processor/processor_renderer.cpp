@@ -27,7 +27,7 @@ std::optional<glm::dvec3> ProcessorRenderer::pick(const ProcessorPicture& of, gl
     const Scene& scene = of.scene();
     const Ray ray =
         cameraRay(scene.camera, double(size.x) / size.y, (glm::dvec2(place) + 0.5) / glm::dvec2(size) * 2.0 - 1.0);
-    const WorldFrame frame = worldFrame(volumes_->source()->info().bounds, scene.stretch);
+    const WorldFrame frame = worldFrame(volumes_->source()->info(), scene.stretch);
     return frame.toPhysical(ray.origin + ray.direction * distance);
 }
 

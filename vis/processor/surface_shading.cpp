@@ -39,7 +39,7 @@ double curvatureOf(const LookSample& at, glm::dvec3 dx, glm::dvec3 dy, glm::dvec
 
 SurfaceShading::SurfaceShading(const Scene& scene, const volume::DatasetInfo& info, const packet::SceneLight& light,
                                glm::ivec2 size)
-    : scene_(scene), frame_(worldFrame(info.bounds, scene.stretch)),
+    : scene_(scene), frame_(worldFrame(info, scene.stretch)),
       middle_(cameraRay(scene.camera, double(size.x) / size.y, {0, 0})), around_(light),
       clips_(placeClips(scene.clips, frame_)), lenses_(placeLenses(scene, frame_)),
       look_(lookView(scene, frame_.halfSize, worldCell(info.lattice, frame_), size)) {

@@ -38,7 +38,7 @@ std::vector<std::uint8_t> blockSteps(const RayPlan& plan, const Scene& scene, co
         added.map = transferMap(field, scene, info);
     }
     if (std::ranges::none_of(layers, [](const BlockLayer& layer) { return layer.medium.has_value(); })) return {};
-    const double unit = stepUnit(worldCell(lattice, worldFrame(info.bounds, scene.stretch)));
+    const double unit = stepUnit(worldCell(lattice, worldFrame(info, scene.stretch)));
     std::vector<std::uint8_t> codes(grid->min.size());
     parallelRanges(
         codes.size(),
@@ -69,7 +69,7 @@ double samplesLeft(int code, const Scene& scene, const volume::DatasetInfo& info
                    double edge) {
     constexpr double kChord = 2.0 / 3; // mean chord of a cube over all rays, in edges
     if (code == 0) return 1;
-    const glm::dvec3 cell = worldCell(lattice, worldFrame(info.bounds, scene.stretch));
+    const glm::dvec3 cell = worldCell(lattice, worldFrame(info, scene.stretch));
     const double sample = double(scene.render.stepVoxels) * (cell.x + cell.y + cell.z) / 3;
     const double together = stepOfCode(code, stepUnit(cell)) / sample;
     return 1 / std::clamp(std::floor(together), 1.0, std::max(kChord * edge / double(scene.render.stepVoxels), 1.0));

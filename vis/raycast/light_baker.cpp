@@ -44,7 +44,7 @@ bool LightBaker::ready() const {
 
 void LightBaker::update(const Scene& scene, const volume::DatasetInfo& info, const Medium& medium,
                         const std::variant<Pass, Rows>& how, double budgetMs, bool wait) {
-    const LightGrid grid = lightGrid(worldFrame(info.bounds, scene.stretch), scene.lighting.shadows);
+    const LightGrid grid = lightGrid(worldFrame(info, scene.stretch), scene.lighting.shadows);
     if (MediumKey key = keyOf(scene, grid, medium); mediumOf_ != key) {
         mediumOf_ = std::move(key);
         grid_ = grid;

@@ -135,7 +135,7 @@ RayUnits rayUnits(const RayPlan& plan) {
 
 void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& scene, const volume::DatasetInfo& info,
                     const volume::BrickGrid& grid, glm::ivec2 size, double stepFactor) {
-    const WorldFrame frame = worldFrame(info.bounds, scene.stretch);
+    const WorldFrame frame = worldFrame(info, scene.stretch);
     const glm::dvec3 cellsPerWorld = 1.0 / (frame.scale * grid.lattice.spacing);
     const RenderParams& render = scene.render;
     setCamera(program, scene, double(size.x) / size.y);

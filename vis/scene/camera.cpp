@@ -55,6 +55,12 @@ WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch) {
     return frame;
 }
 
+WorldFrame worldFrame(const volume::DatasetInfo& info, glm::dvec3 stretch) {
+    WorldFrame frame = worldFrame(info, stretch);
+    frame.axes = info.lattice.axes;
+    return frame;
+}
+
 glm::dmat4 viewMatrix(const Camera& camera) {
     const glm::dmat4 toTarget = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -camera.distance));
     return glm::translate(toTarget * glm::mat4_cast(orientation(camera)), -glm::dvec3(camera.target));

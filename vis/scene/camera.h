@@ -1,7 +1,7 @@
 #pragma once
 
 #include "volume/base/describe.h"
-#include "volume/field/lattice.h"
+#include "volume/field/dataset.h"
 
 #include <array>
 #include <glm/gtc/quaternion.hpp>
@@ -60,14 +60,23 @@ struct Camera {
 };
 
 /// Maps the physical positions of a data set to world space and back. `stretch` is per axis, 1 = true proportions.
+/// World space is affine to the sheet of the axes (`volume/field/axis_map.h`): where they are uneven each cell is drawn
+/// as thick as any other, and what is straight in space is bent.
 struct WorldFrame {
-    glm::dvec3 scale{1}, offset{0}; ///< world = physical * scale + offset
+    glm::dvec3 scale{1}, offset{0}; ///< world = sheet * scale + offset
     glm::dvec3 halfSize{0.5};       ///< half the edges of the stretched box, in world units
+    volume::AxisMaps axes = {};     ///< from the sheet to space
 
-    glm::dvec3 toWorld(glm::dvec3 physical) const { return physical * scale + offset; }
-    glm::dvec3 toPhysical(glm::dvec3 world) const { return (world - offset) / scale; }
+    glm::dvec3 toWorld(glm::dvec3 physical) const { return sheetToWorld(axes.toSheet(physical)); }
+    glm::dvec3 toPhysical(glm::dvec3 world) const { return axes.toSpace(worldToSheet(world)); }
+    /// Of the sheet: what bricks, slices of samples and planes of a lattice are drawn by.
+    glm::dvec3 sheetToWorld(glm::dvec3 sheet) const { return sheet * scale + offset; }
+    glm::dvec3 worldToSheet(glm::dvec3 world) const { return (world - offset) / scale; }
 };
+/// The frame of a box with even axes.
 WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch);
+/// The frame of a data set, with the axes of its lattice.
+WorldFrame worldFrame(const volume::DatasetInfo& info, glm::dvec3 stretch);
 
 /// View matrix (world to eye) and projection (eye to clip, GL convention). Near and far are fitted to the cube
 /// -1/2..1/2 that contains every world box; with the eye inside it, near is a thousandth of far.

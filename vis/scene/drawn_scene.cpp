@@ -57,7 +57,7 @@ DrawnChannel drawnChannel(const Scene& scene, const volume::DatasetInfo& info, i
 
 DrawnScene drawnScene(const Scene& scene, const volume::DatasetInfo& info) {
     DrawnScene drawn;
-    drawn.lenses = placeLenses(scene, worldFrame(info.bounds, scene.stretch));
+    drawn.lenses = placeLenses(scene, worldFrame(info, scene.stretch));
     for (int i = 0; i < int(scene.layers.size()); ++i)
         if (const auto layer = drawnLayer(scene, info, i, drawn.lenses)) drawn.layers.push_back(*layer);
     for (const std::string& name : selectedChannels(scene.selection))

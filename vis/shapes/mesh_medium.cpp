@@ -31,7 +31,7 @@ template <class Number> void deposit(Medium<Number>& medium, const LightGrid& gr
 MeshCasters meshCasters(const Scene& scene, const volume::DatasetInfo& info) {
     MeshCasters out;
     if (!scene.lighting.shadows.meshes) return out;
-    out.frame = worldFrame(info.bounds, scene.stretch);
+    out.frame = worldFrame(info, scene.stretch);
     out.clips = placeClips(scene.clips, out.frame);
     out.lenses = placeLenses(scene, out.frame);
     for (const DrawnGeometry& drawn : drawnGeometry(scene, out.lenses)) {

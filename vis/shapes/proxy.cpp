@@ -39,7 +39,7 @@ ProxySurfaces proxySurfaces(const Scene& scene, const volume::Lattice& lattice, 
         out.normal = glm::dvec3(0);
         out.normal[axis] = middle.direction[axis] < 0 ? -1 : 1;
         out.spacing = std::abs(edges[axis]) / (lattice.kind == volume::LatticeKind::BCC ? 2 : 1);
-        const double through = out.normal[axis] * frame.toWorld(lattice.origin)[axis]; // offset of a lattice plane
+        const double through = out.normal[axis] * frame.sheetToWorld(lattice.origin)[axis]; // offset of a lattice plane
         const double nearFace = -frame.halfSize[axis];
         phase = (through - nearFace) / out.spacing;
         phase -= std::floor(phase + 1e-6);

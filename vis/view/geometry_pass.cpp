@@ -173,7 +173,7 @@ void setCommon(const Program& program, const GeometryJob& job) {
     const Scene& scene = job.scene;
     const glm::ivec2 size = job.size;
     const double aspect = double(size.x) / size.y;
-    const WorldFrame frame = worldFrame(job.info.bounds, scene.stretch);
+    const WorldFrame frame = worldFrame(job.info, scene.stretch);
     const Ray middle = cameraRay(scene.camera, aspect, {0, 0});
     // A jittered ray has the ndc of its pixel plus 2 jitter / size, so geometry moves the opposite way.
     const glm::dmat4 moved = glm::translate(glm::dmat4(1), glm::dvec3(-2.0 * job.jitter / glm::dvec2(size), 0));
@@ -245,7 +245,7 @@ std::vector<GeometryPass::Draw> GeometryPass::collect(const GeometryJob& job, Gr
 void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) const {
     const GeometryLayer& layer = job.scene.geometry[each.layer];
     const Program& own = *each.program;
-    const WorldFrame frame = worldFrame(job.info.bounds, job.scene.stretch);
+    const WorldFrame frame = worldFrame(job.info, job.scene.stretch);
     const glm::dvec3 origin = each.lines ? layer.geometry->lines.origin : layer.geometry->mesh.origin;
     own.set("worldOffset", glm::vec3(frame.toWorld(origin)));
     own.set("peel", peel);

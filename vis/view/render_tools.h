@@ -21,7 +21,7 @@ struct RenderCall {
 
     const volume::DatasetInfo& info() const { return source.info(); }
     const volume::BrickGrid& grid() const { return source.grid(); }
-    WorldFrame frame() const { return worldFrame(info().bounds, scene.stretch); }
+    WorldFrame frame() const { return worldFrame(info(), scene.stretch); }
 };
 
 /// Resources shared by all pictures of a context.

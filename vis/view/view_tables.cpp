@@ -96,8 +96,7 @@ TablesContent ViewTables::make(const TablesKey& key, const RenderCall& call) {
     if (!made.adaptive) steps.clear();
     covered_.clear();
     if (blocks)
-        made.occupied =
-            occupiedBoxes(*blocks, *commonBlocks(plan), call.grid(), worldFrame(info.bounds, key.scene.stretch));
+        made.occupied = occupiedBoxes(*blocks, *commonBlocks(plan), call.grid(), worldFrame(info, key.scene.stretch));
     const std::vector<glm::vec4> table = transferTables(plan, key.scene, info);
     made.opaque = opaqueIntervals(plan, table);
     uploadTransfer(table);

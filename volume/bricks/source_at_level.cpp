@@ -13,7 +13,8 @@ BrickGrid gridAtLevel(const BrickGrid& fine, int level) {
     BrickGrid out;
     out.lattice.size = (fine.lattice.texels() + (1 << level) - 1) >> level;
     out.lattice.spacing = fine.lattice.spacing * double(1 << level);
-    out.lattice.origin = fine.lattice.fromCells(glm::dvec3(fine.levelPhase(level)));
+    out.lattice.axes = fine.lattice.axes;
+    out.lattice.origin = fine.lattice.sheetOfCells(glm::dvec3(fine.levelPhase(level)));
     out.brickSize = fine.brickSize >> level;
     out.levels = 1;
     return out;

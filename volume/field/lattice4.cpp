@@ -8,7 +8,7 @@ namespace tessera::volume {
 Lattice Lattice4::grid(int frame) const {
     const double half = kind == LatticeKind4::D4 && frame % 2 != 0 ? 0.5 : 0.0;
     const glm::dvec3 cell(spacing);
-    return {LatticeKind::CC, glm::ivec3(size), cell, glm::dvec3(origin) + half * cell};
+    return {LatticeKind::CC, glm::ivec3(size), cell, glm::dvec3(origin) + half * cell, axes};
 }
 
 Lattice Lattice4::atOneTime() const {
@@ -27,6 +27,7 @@ int Lattice4::framesOf(int parity) const {
 Lattice4 d4For(const Lattice4& cc) {
     Lattice4 d4;
     d4.kind = LatticeKind4::D4;
+    d4.axes = cc.axes;
     d4.spacing = cc.spacing * kBccSpacing;
     glm::dvec4 span{0}; // in space, from the first to the last sample, in cells
     for (int axis = 0; axis < 3; ++axis) {

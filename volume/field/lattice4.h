@@ -23,6 +23,7 @@ struct Lattice4 {
     glm::ivec4 size{1};    ///< samples of a frame along x, y, z, and frames
     glm::dvec4 spacing{1}; ///< cell edges of one of the grids: on D4* frames lie half a cell apart in time
     glm::dvec4 origin{0};  ///< position of sample (0, 0, 0) of frame 0
+    AxisMaps axes = {};    ///< of space, from the sheet that `spacing` and `origin` are of
 
     bool operator==(const Lattice4&) const = default;
 

@@ -19,7 +19,8 @@ SampleGrid pairMeans(const BrickGrid& bricks, int level, const SampleGrid& fine,
     out.lattice.size = {stored.x, stored.y, (stored.z + 1) / 2};
     const double step = double(1 << level);
     out.lattice.spacing = bricks.lattice.spacing * step;
-    out.lattice.origin = bricks.lattice.fromCells(glm::dvec3(bricks.levelPhase(level) + 0.25));
+    out.lattice.axes = bricks.lattice.axes;
+    out.lattice.origin = bricks.lattice.sheetOfCells(glm::dvec3(bricks.levelPhase(level) + 0.25));
     out.values.resize(out.lattice.count());
     if (!fine.present.empty()) out.present.resize(out.values.size());
     const std::size_t slice = std::size_t(stored.x) * std::size_t(stored.y);
@@ -46,7 +47,7 @@ SampleGrid readStored(const BrickSource& source, int channel, int time, int leve
     out.lattice.size = size;
     if (level > 0 && !bcc) {
         out.lattice.spacing = bricks.lattice.spacing * double(1 << level);
-        out.lattice.origin = bricks.lattice.fromCells(glm::dvec3(bricks.levelPhase(level)));
+        out.lattice.origin = bricks.lattice.sheetOfCells(glm::dvec3(bricks.levelPhase(level)));
     }
     out.values.resize(out.lattice.count());
     out.present.assign(out.values.size(), 1);

@@ -18,7 +18,7 @@ Lattice4 frameLattice(const DatasetInfo& info, LatticeKind4 kind) {
     // D4* frames are half a cell apart, so its cells are two frames long.
     const double cell = kind == LatticeKind4::D4 ? 2 : 1;
     return {kind, glm::ivec4(info.lattice.size, int(info.times.size())), glm::dvec4(info.lattice.spacing, cell),
-            glm::dvec4(info.lattice.origin, 0)};
+            glm::dvec4(info.lattice.origin, 0), info.lattice.axes};
 }
 
 std::string textOf(double number) {

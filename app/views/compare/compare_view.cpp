@@ -71,7 +71,7 @@ bool picture(const Frame& frame, std::size_t index, const PictureBox& box, bool 
     mouseArea("picture", box.size,
               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                   ImGuiButtonFlags_MouseButtonRight);
-    const vis::WorldFrame world = vis::worldFrame(frame.context.source->info().bounds, frame.context.session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(frame.context.source->info(), frame.context.session.stretch);
     CameraController& hand = cache.hands[index];
     hand.blocked = blocked;
     vis::ViewTarget* target = nullptr;

@@ -317,7 +317,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     CubeFrame frame{.info = info,
                     .min = ImGui::GetCursorScreenPos(),
                     .size = {std::floor(left.x), std::floor(left.y)},
-                    .world = vis::worldFrame(info.bounds, session.stretch),
+                    .world = vis::worldFrame(info, session.stretch),
                     .half = {},
                     .camera = {},
                     .space = {}};

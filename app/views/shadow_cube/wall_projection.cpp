@@ -157,7 +157,7 @@ std::optional<double> readWall(const volume::BrickSource& source, const Session&
     const vis::Scene scene = sceneOf(session);
     const vis::TransferFunction& function = vis::transferFor(scene, wall.transfer.empty() ? known.name : wall.transfer);
     const Range range = vis::effectiveRange(function, info.channelRange(known));
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     const double step = 2 * world.halfSize[face.axis] / double(places.size());
     double sum = 0, most = -std::numeric_limits<double>::infinity(), through = 1;
     int count = 0;

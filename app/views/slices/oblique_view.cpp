@@ -119,7 +119,7 @@ std::optional<PlaneFrame> drawTiltedSlice(ViewContext& context, PlaneState& stat
     const PictureRoom room = roomOfPicture(layout, slice, axes);
     const double scale = planeScale(slice, room.lo, room.hi, em() * 2);
     if (!(scale > 0)) return std::nullopt;
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     PlaneFrame frame = planeFrame(slice, world, info.bounds, room.lo, scale);
     useMouse(context, state, slice, frame, [&] { drawTiltMenu(session, info, view); });
     slice = tiltedPlane(session, info, view.normal, shows); // the mouse may have moved the cross-hair or tilted it

@@ -92,7 +92,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     const volume::DatasetInfo& info = context.source->info();
     SliceMatrixCache& cache = cacheOf<SliceMatrixCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostRows);
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, context.session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, context.session.stretch);
     const SliceAxes axes = axesOf(view.axis, world);
     view.planes = std::clamp(view.planes, 1, 12);
     drawToolbar(context, view, shown, axes);

@@ -145,8 +145,7 @@ void drawSliceAtCursor(ViewContext& context, PlaneState& state, const std::strin
         return sliceAtCursor(context.session, info, layout.turned[index], slices[index].shows);
     };
     PlanePicture slice = now();
-    PlaneFrame frame =
-        planeFrame(slice, vis::worldFrame(info.bounds, context.session.stretch), info.bounds, room.lo, scale);
+    PlaneFrame frame = planeFrame(slice, vis::worldFrame(info, context.session.stretch), info.bounds, room.lo, scale);
     ImGui::PushID(static_cast<int>(index));
     useMouse(context, state, slice, frame, [&] { drawBrushMenu(context); });
     ImGui::PopID();
@@ -210,8 +209,8 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
 
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};
     const SliceLayout layout =
-        sliceLayout(ImGui::GetCursorScreenPos(), room, vis::worldFrame(info.bounds, context.session.stretch).halfSize,
-                    em(), !context.takesInput());
+        sliceLayout(ImGui::GetCursorScreenPos(), room, vis::worldFrame(info, context.session.stretch).halfSize, em(),
+                    !context.takesInput());
     const ThreeSlices slices = slicesAtCursor(context.session, info, layout.turned, shows);
     for (std::size_t i = 0; i < 3; ++i) drawSliceAtCursor(context, cache.planes[i], pane, slices, layout, i);
     drawNumbers(context, view, readout, slices[0], layout);

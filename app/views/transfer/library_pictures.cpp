@@ -57,7 +57,7 @@ vis::Scene LibraryPictures::sceneOf(const ViewContext& context, const Picture& p
     scene.background = picture.of.background;
     scene.showBox = false;
     if (!info.times.empty()) scene.time = info.times[std::size_t(picture.of.time)];
-    const vis::WorldFrame world = vis::worldFrame(info.bounds, scene.stretch);
+    const vis::WorldFrame world = vis::worldFrame(info, scene.stretch);
     scene.camera.orientation = vis::firstOrientation(world);
     vis::fit(scene.camera, world, 1);
     scene.camera.distance *= kCloser;

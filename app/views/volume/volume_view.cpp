@@ -130,9 +130,8 @@ class SpacePicture {
 public:
     SpacePicture(ViewContext& context, VolumeCache& cache, VolumeView& view, PictureBox picture)
         : context_(context), cache_(cache), view_(view), picture_(picture), session_(context.session),
-          shown_(context.decoration), info_(context.source->info()),
-          world_(vis::worldFrame(info_.bounds, session_.stretch)), triad_(triadRadius(picture.size)),
-          triadAt_(triadMiddle(picture.min, picture.max(), cache.triad, triad_)),
+          shown_(context.decoration), info_(context.source->info()), world_(vis::worldFrame(info_, session_.stretch)),
+          triad_(triadRadius(picture.size)), triadAt_(triadMiddle(picture.min, picture.max(), cache.triad, triad_)),
           hasTriad_(view.showGizmo && picture.size.x > em() * 13 && picture.size.y > em() * 9),
           chain_(context, view, picture) {}
 
