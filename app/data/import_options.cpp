@@ -31,7 +31,7 @@ glm::ivec3 parseGrid(const std::string& text) {
     int used = 0;
     const int found = std::sscanf(text.c_str(), "%dx%dx%d%n", &values[0], &values[1], &values[2], &used);
     if (found != 3 || static_cast<std::size_t>(used) != text.size())
-        throw CLI::ValidationError("--grid", "needs XxYxZ, not \"" + text + "\"");
+        throw CLI::ValidationError("--grid", "needs planes, even, or XxYxZ, not \"" + text + "\"");
     for (const int value : values)
         if (value < 1 || value > 4096) throw CLI::ValidationError("--grid", "each size must be 1..4096");
     return {values[0], values[1], values[2]};
@@ -48,6 +48,8 @@ std::vector<std::string> importArguments(const volume::ImportOptions& options) {
     if (options.gridSize.x > 0)
         add("--grid", std::to_string(options.gridSize.x) + "x" + std::to_string(options.gridSize.y) + "x" +
                           std::to_string(options.gridSize.z));
+    else if (options.grid != volume::GridChoice::Planes)
+        add("--grid", std::string(volume::kGridChoiceNames[std::size_t(options.grid)]));
     for (const std::string& rule : options.absent) add("--absent", rule);
     if (!options.autoAbsent) out.push_back("--no-auto-absent");
     for (const std::string& rule : options.labels) add("--label", rule);
@@ -86,8 +88,17 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
         ->group("Import");
     command
         .add_option_function<std::string>(
-            "--grid", [&options](const std::string& text) { options.gridSize = parseGrid(text); },
-            "Grid XxYxZ that meshes are resampled to (default: chosen by the number of cells)")
+            "--grid",
+            [&options](const std::string& text) {
+                const auto named = std::ranges::find(volume::kGridChoiceNames, text);
+                if (named == std::end(volume::kGridChoiceNames))
+                    options.gridSize = parseGrid(text);
+                else
+                    options.grid = volume::GridChoice(named - std::begin(volume::kGridChoiceNames));
+            },
+            "Samples of meshes: planes (between those where cells begin and end, so that layers keep their thickness; "
+            "the default), even (at even distances, as many as cells), or an even grid XxYxZ; of grids with uneven "
+            "spacing, planes keeps them as they are")
         ->group("Import");
     command
         .add_option("--absent", options.absent,

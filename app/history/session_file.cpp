@@ -79,6 +79,18 @@ void migrateLattice(Json& document) {
     }
 }
 
+/// Up to schema 3 meshes and uneven grids were sampled on even grids: the numbers of such sessions stay what they were.
+void keepEvenGrid(Json& document) {
+    const auto data = document.find("data");
+    if (data == document.end() || !data->is_object()) return;
+    const auto files = data->find("files");
+    if (files == data->end() || !files->is_array() || files->empty()) return;
+    Json& import = (*data)["import"];
+    if (import.is_null()) import = Json::object();
+    if (import.is_object() && !import.contains("grid"))
+        import["grid"] = volume::kGridChoiceNames[std::size_t(volume::GridChoice::Even)];
+}
+
 } // namespace
 
 void migrate(Json& document, const std::string& file) {
@@ -96,6 +108,7 @@ void migrate(Json& document, const std::string& file) {
                         "), which is no longer read",
                     file, "/schema");
     if (schema < 3) migrateLattice(document);
+    if (schema < 4) keepEvenGrid(document);
     document["schema"] = kSessionSchema;
 }
 

@@ -1,4 +1,5 @@
 #include "app/importer/describe_source.h"
+#include "app/importer/node_values.h"
 #include "app/importer/present.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 /// The messages of volume/import/files/stream.h that are JSON.
 namespace tessera::importer {
 
-std::string rangesJson(vtkDataSet* data, vtkDataArray* stored, const ArrayRef& array) {
+std::string rangesJson(vtkDataSet* data, vtkDataArray* stored, const ArrayRef& array, bool between) {
     const int components = array.form.components;
     const bool any = stored != nullptr && stored->GetNumberOfComponents() >= array.firstComponent + components;
     const vtkSmartPointer<vtkDataArray> values = any ? valuesOf(data, stored, array) : nullptr;
@@ -44,11 +45,51 @@ std::string rangesJson(vtkDataSet* data, vtkDataArray* stored, const ArrayRef& a
         }
         if (components > 1 && std::isfinite(square)) widen(std::size_t(components), std::sqrt(square));
     }
+    if (any && array.ofCells && between && array.form.type == volume::ScalarType::F32) {
+        std::vector<double> squares(std::size_t(data->GetNumberOfPoints()), 0);
+        for (int c = 0; c < components; ++c) {
+            const std::vector<double> corners = nodeValues(data, values, array.firstComponent + c);
+            for (std::size_t p = 0; p < corners.size(); ++p) {
+                if (std::isfinite(corners[p])) widen(std::size_t(c), corners[p]);
+                squares[p] += corners[p] * corners[p];
+            }
+        }
+        for (const double square : squares)
+            if (components > 1 && std::isfinite(square)) widen(std::size_t(components), std::sqrt(square));
+    }
     nlohmann::json ranges = nlohmann::json::array();
     for (std::size_t i = 0; i < lo.size(); ++i)
         ranges.push_back(lo[i] <= hi[i] ? nlohmann::json{lo[i], hi[i]} : nlohmann::json());
     return nlohmann::json{{"ranges", ranges}}.dump();
 }
+
+namespace {
+
+nlohmann::json axesJson(const volume::AxisMaps& axes) {
+    nlohmann::json out = nlohmann::json::array();
+    for (int axis = 0; axis < 3; ++axis) {
+        const volume::AxisMap* map = axes[axis];
+        out.push_back(map == nullptr
+                          ? nlohmann::json()
+                          : nlohmann::json{{"of", map->of() == volume::AxisMap::Of::Cells ? "cells" : "points"},
+                                           {"planes", map->planes()}});
+    }
+    return out;
+}
+
+nlohmann::json eventsJson(const std::array<volume::AxisEvents, 3>& axes) {
+    nlohmann::json out = nlohmann::json::array();
+    for (const volume::AxisEvents& events : axes) {
+        std::vector<double> numbers;
+        for (const volume::AxisEvent& e : events)
+            numbers.insert(numbers.end(),
+                           {e.place, e.begun, e.ended, e.areaBegun, e.areaEnded, e.perLengthBegun, e.perLengthEnded});
+        out.push_back(numbers);
+    }
+    return out;
+}
+
+} // namespace
 
 std::string headerJson(const std::vector<BlockRef>& blocks) {
     using json = nlohmann::ordered_json;
@@ -65,9 +106,13 @@ std::string headerJson(const std::vector<BlockRef>& blocks) {
         entry["dims"] = triple(block.lattice.size);
         entry["spacing"] = triple(block.lattice.spacing);
         entry["origin"] = triple(block.lattice.origin);
+        if (!block.lattice.isEven()) entry["axes"] = axesJson(block.lattice.axes);
+        if (std::ranges::any_of(block.events, [](const auto& events) { return !events.empty(); }))
+            entry["events"] = eventsJson(block.events);
         entry["box"] = {block.box.lo.x, block.box.lo.y, block.box.lo.z, block.box.hi.x, block.box.hi.y, block.box.hi.z};
         entry["cells"] = {block.cells};
         entry["cellSize"] = triple(block.cellSize);
+        if (block.mesh) entry["boxes"] = block.boxes;
         entry["lengthUnit"] = block.lengthUnit;
         entry["timeName"] = block.timeName;
         entry["timeUnit"] = block.timeUnit;

@@ -1,5 +1,7 @@
 #include "app/importer/describe_source.h"
 
+#include "app/importer/even_grid.h"
+#include "app/importer/mesh_events.h"
 #include "app/importer/present_cells.h"
 #include "app/importer/readers/vtk_messages.h"
 #include "volume/import/files/upright.h"
@@ -25,6 +27,7 @@
 #include <vtkInformationVector.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkRectilinearGrid.h>
 #include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
@@ -163,26 +166,35 @@ void noteRounded(BlockRef& ref, vtkDataSet* data) {
     if (!names.empty()) addNote(ref, "64-bit numbers are read as 32-bit ones, with 7 digits: " + names);
 }
 
-/// The cells that are data: their number, their box, and the harmonic mean of their extents per axis.
-void describeCells(vtkDataSet* mesh, volume::FileBlock& block) {
-    const double* all = mesh->GetBounds();
-    double largest = 0;
-    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, all[2 * axis + 1] - all[2 * axis]);
-    const std::vector<std::uint8_t> present = presentCells(mesh);
-    glm::dvec3 inverse(0), lo(std::numeric_limits<double>::max()), hi(std::numeric_limits<double>::lowest());
-    for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c) {
-        if (!volume::isPresent(present, std::size_t(c))) continue;
-        double bounds[6];
-        mesh->GetCellBounds(c, bounds);
-        const glm::dvec3 least(bounds[0], bounds[2], bounds[4]), most(bounds[1], bounds[3], bounds[5]);
-        lo = glm::min(lo, least);
-        hi = glm::max(hi, most);
-        inverse += 1.0 / glm::max(most - least, 1e-7 * largest);
-        ++block.cells;
+/// The lattice of an uneven grid, whose axes rise: of its points, or of the middles of its cells. An axis with a single
+/// layer of points has one layer of samples.
+void setAxes(BlockRef& ref, vtkRectilinearGrid* grid, bool cells) {
+    vtkDataArray* const places[] = {grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates()};
+    volume::Lattice even;
+    volume::AxisMaps axes;
+    ref.block.cellData = cells;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<double> planes;
+        for (vtkIdType i = 0; i < places[axis]->GetNumberOfTuples(); ++i)
+            planes.push_back(places[axis]->GetComponent(i, 0));
+        even.origin[axis] = planes.front();
+        if (planes.size() < 2) continue;
+        const auto count = double(planes.size() - 1);
+        even.spacing[axis] = (planes.back() - planes.front()) / count;
+        even.size[axis] = int(planes.size()) - (cells ? 1 : 0);
+        if (cells) even.origin[axis] += 0.5 * even.spacing[axis];
+        if (!isEven(planes))
+            axes.of[std::size_t(axis)] = std::make_shared<const volume::AxisMap>(
+                cells ? volume::AxisMap::Of::Cells : volume::AxisMap::Of::Points, std::move(planes));
     }
-    if (block.cells < 1) throw std::runtime_error("holds no cells that are data, only ghosts of other pieces");
-    block.box = {lo, hi};
-    block.cellSize = glm::dvec3(block.cells) / inverse;
+    ref.block.lattice = volume::withAxes(even, std::move(axes));
+    const double* box = grid->GetBounds();
+    ref.block.box = {{box[0], box[2], box[4]}, {box[1], box[3], box[5]}};
+}
+
+/// Where places of cells are listed one block has less room with others beside it.
+std::size_t mostEventsOf(std::size_t blocks) {
+    return std::clamp<std::size_t>(60'000 / std::max<std::size_t>(blocks, 1), 200, 3000);
 }
 
 } // namespace
@@ -267,11 +279,14 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
                     if (array.ofCells) addNoteOfCells(ref, array.form.name);
                 std::erase_if(ref.arrays, [](const ArrayRef& array) { return array.ofCells; });
             }
+        } else if (auto* grid = vtkRectilinearGrid::SafeDownCast(data); grid != nullptr && isAligned(grid)) {
+            describeCells(data, 0, ref.block);
+            setAxes(ref, grid, !pointData);
         } else {
             ref.block.mesh = true;
             // OpenFOAM's values are of cells, beside which there may be the motion of points.
             ref.block.cellData = !pointData || source.format == "OpenFOAM";
-            describeCells(data, ref.block);
+            describeCells(data, mostEventsOf(blocks.size()), ref.block);
         }
         noteRounded(ref, data);
         describeFieldData(data->GetFieldData(), ref.block, ref.arrays);
@@ -303,6 +318,7 @@ void mergeBlocks(std::vector<BlockRef>& blocks, const std::vector<BlockRef>& mor
         const bool moves = glm::length(known->block.box.lo - ref.block.box.lo) > tolerance ||
                            glm::length(known->block.box.hi - ref.block.box.hi) > tolerance;
         if (known->block.mesh && moves) known->block.cellData = true; // then as many samples as cells at each time
+        if (moves) known->block.events = {};                          // its planes lie elsewhere at each time
         known->block.box.lo = glm::min(known->block.box.lo, ref.block.box.lo);
         known->block.box.hi = glm::max(known->block.box.hi, ref.block.box.hi);
     }

@@ -53,7 +53,7 @@ std::string meshHead(const Source& source);
 vtkDataArray* findArray(vtkDataSet* data, const ArrayRef& array);
 
 /// The JSON answer to a "ranges" request (volume/import/files/stream.h); no array (null) has no range.
-std::string rangesJson(vtkDataSet* data, vtkDataArray* values, const ArrayRef& array);
+std::string rangesJson(vtkDataSet* data, vtkDataArray* values, const ArrayRef& array, bool between);
 
 /// The JSON of a header message (volume/import/files/stream.h).
 std::string headerJson(const std::vector<BlockRef>& blocks);

@@ -3,12 +3,16 @@
 #include "volume/import/files/upright.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
+#include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
 #include <vtkImageData.h>
 #include <vtkMatrix3x3.h>
@@ -65,9 +69,157 @@ vtkSmartPointer<vtkDataArray> inOrder(vtkDataArray* from, const volume::UprightG
     return to;
 }
 
+/// Values of points and cells of a grid of `points` points, in the order of an upright grid.
+void turnArrays(vtkDataSet* from, vtkDataSet* to, const volume::StoredGrid& points, const volume::UprightGrid& grid) {
+    volume::StoredGrid inner = points; // of cells: an axis with one layer of points has one layer of cells
+    for (int axis = 0; axis < 3; ++axis) inner.size[axis] = std::max(1, points.size[axis] - 1);
+    const volume::UprightGrid cells = volume::upright(inner);
+    const auto turn = [](vtkDataSetAttributes* own, vtkDataSetAttributes* out, const volume::UprightGrid& by) {
+        for (int i = 0; i < own->GetNumberOfArrays(); ++i)
+            if (vtkDataArray* array = own->GetArray(i))
+                if (std::size_t(array->GetNumberOfTuples()) == by.lattice.count()) out->AddArray(inOrder(array, by));
+    };
+    to->GetFieldData()->ShallowCopy(from->GetFieldData());
+    if (grid.asStored()) {
+        to->GetPointData()->ShallowCopy(from->GetPointData());
+        to->GetCellData()->ShallowCopy(from->GetCellData());
+        return;
+    }
+    turn(from->GetPointData(), to->GetPointData(), grid);
+    turn(from->GetCellData(), to->GetCellData(), cells);
+}
+
+/// Points of a grid in the order of its axes.
+struct GridPoints {
+    int size[3] = {0, 0, 0};
+    vtkIdType stride[3] = {0, 0, 0}, count = 1;
+
+    explicit GridPoints(const int extent[6]) {
+        for (int axis = 0; axis < 3; ++axis) {
+            size[axis] = extent[2 * axis + 1] - extent[2 * axis] + 1;
+            stride[axis] = count;
+            count *= size[axis];
+        }
+    }
+    int along(int axis, vtkIdType point) const { return int(point / stride[axis] % size[axis]); }
+};
+
+glm::dvec3 placeOf(vtkDataSet* data, vtkIdType point) {
+    double place[3];
+    data->GetPoint(point, place);
+    return {place[0], place[1], place[2]};
+}
+
+/// The even grid that points lie on, to 0.1 % of a step; nothing if they do not.
+std::optional<volume::StoredGrid> evenGridOf(vtkDataSet* data, const GridPoints& points) {
+    volume::StoredGrid grid{{points.size[0], points.size[1], points.size[2]}, placeOf(data, 0), glm::dmat3(0)};
+    double coarsest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (points.size[axis] < 2) continue;
+        const glm::dvec3 last = placeOf(data, points.stride[axis] * (points.size[axis] - 1));
+        grid.steps[axis] = (last - grid.origin) / double(points.size[axis] - 1);
+        if (!(glm::length(grid.steps[axis]) > 0)) return std::nullopt;
+        coarsest = std::max(coarsest, glm::length(grid.steps[axis]));
+    }
+    const volume::UprightGrid straight = volume::upright(withoutFlatAxes(grid));
+    if (!straight.note.empty()) return std::nullopt; // it is sampled where it lies
+    for (vtkIdType n = 0; n < points.count; ++n) {
+        const glm::dvec3 place = placeOf(data, n);
+        glm::dvec3 wanted = grid.origin;
+        for (int axis = 0; axis < 3; ++axis) wanted += grid.steps[axis] * double(points.along(axis, n));
+        for (int axis = 0; axis < 3; ++axis) {
+            const double step = straight.lattice.size[axis] > 1 ? straight.lattice.spacing[axis] : coarsest;
+            if (!(std::abs(place[axis] - wanted[axis]) <= 1e-3 * step)) return std::nullopt;
+        }
+    }
+    return withoutFlatAxes(grid);
+}
+
+vtkSmartPointer<vtkDataSet> evenImage(vtkDataSet* data, const volume::StoredGrid& grid) {
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(grid.size.x, grid.size.y, grid.size.z);
+    image->SetOrigin(grid.origin.x, grid.origin.y, grid.origin.z);
+    for (int axis = 0; axis < 3; ++axis)
+        for (int row = 0; row < 3; ++row)
+            image->GetDirectionMatrix()->SetElement(row, axis, grid.steps[axis][row] / glm::length(grid.steps[axis]));
+    image->SetSpacing(glm::length(grid.steps[0]), glm::length(grid.steps[1]), glm::length(grid.steps[2]));
+    image->GetPointData()->ShallowCopy(data->GetPointData());
+    image->GetCellData()->ShallowCopy(data->GetCellData());
+    image->GetFieldData()->ShallowCopy(data->GetFieldData());
+    return image;
+}
+
+/// The grid with axes of space that rise; null where its points lie on none, to 0.1 % of the least step beside a point.
+vtkSmartPointer<vtkDataSet> unevenGrid(vtkDataSet* data, const GridPoints& points) {
+    // Which axis of space each axis runs along, and in which sense: steps of one as if it were even.
+    volume::StoredGrid sense{{points.size[0], points.size[1], points.size[2]}, {}, glm::dmat3(0)};
+    const glm::dvec3 first = placeOf(data, 0);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (points.size[axis] < 2) continue;
+        const glm::dvec3 way = placeOf(data, points.stride[axis] * (points.size[axis] - 1)) - first;
+        if (!(glm::length(way) > 0)) return nullptr;
+        sense.steps[axis] = way / glm::length(way);
+    }
+    sense = withoutFlatAxes(sense);
+    const volume::UprightGrid turned = volume::upright(sense);
+    if (!turned.note.empty()) return nullptr;
+    std::array<std::vector<double>, 3> places;
+    for (int space = 0; space < 3; ++space) {
+        const int own = turned.from[std::size_t(space)];
+        for (int i = 0; i < points.size[own]; ++i)
+            places[std::size_t(space)].push_back(placeOf(data, points.stride[own] * i)[space]);
+        if (turned.turned[std::size_t(space)]) std::ranges::reverse(places[std::size_t(space)]);
+        if (!std::ranges::is_sorted(places[std::size_t(space)], std::ranges::less_equal{})) return nullptr;
+    }
+    for (vtkIdType n = 0; n < points.count; ++n) {
+        const glm::dvec3 place = placeOf(data, n);
+        for (int space = 0; space < 3; ++space) {
+            const std::vector<double>& own = places[std::size_t(space)];
+            const auto last = own.size() - 1;
+            auto i = std::size_t(points.along(turned.from[std::size_t(space)], n));
+            if (turned.turned[std::size_t(space)]) i = last - i;
+            double step = last == 0 ? std::numeric_limits<double>::max() : own[last] - own[0];
+            if (i > 0) step = std::min(step, own[i] - own[i - 1]);
+            if (i < last) step = std::min(step, own[i + 1] - own[i]);
+            if (!(std::abs(place[space] - own[i]) <= 1e-3 * step)) return nullptr;
+        }
+    }
+    auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
+    grid->SetDimensions(turned.lattice.size.x, turned.lattice.size.y, turned.lattice.size.z);
+    vtkNew<vtkDoubleArray> coordinates[3];
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const double place : places[axis]) coordinates[axis]->InsertNextValue(place);
+    grid->SetXCoordinates(coordinates[0]);
+    grid->SetYCoordinates(coordinates[1]);
+    grid->SetZCoordinates(coordinates[2]);
+    turnArrays(data, grid, sense, turned);
+    return grid;
+}
+
+/// Values of points and of cells, which would need different grids.
+bool hasBoth(vtkDataSet* data) {
+    return data->GetPointData()->GetNumberOfArrays() > 0 && data->GetCellData()->GetNumberOfArrays() > 0;
+}
+
 } // namespace
 
-vtkSmartPointer<vtkDataSet> asEvenGrid(vtkSmartPointer<vtkDataSet> data) {
+bool isAligned(vtkRectilinearGrid* grid) {
+    if (hasBoth(grid)) return false;
+    for (vtkDataArray* places : {grid->GetXCoordinates(), grid->GetYCoordinates(), grid->GetZCoordinates()})
+        for (vtkIdType i = 1; i < places->GetNumberOfTuples(); ++i)
+            if (!(places->GetComponent(i, 0) > places->GetComponent(i - 1, 0))) return false;
+    return true;
+}
+
+bool isEven(const std::vector<double>& places) {
+    if (places.size() < 3) return true;
+    const double step = (places.back() - places.front()) / double(places.size() - 1);
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (!(std::abs(places[i] - (places.front() + step * double(i))) <= 1e-3 * step)) return false;
+    return true;
+}
+
+vtkSmartPointer<vtkDataSet> asAlignedGrid(vtkSmartPointer<vtkDataSet> data) {
     int extent[6] = {};
     if (auto* structured = vtkStructuredGrid::SafeDownCast(data))
         structured->GetExtent(extent);
@@ -75,52 +227,12 @@ vtkSmartPointer<vtkDataSet> asEvenGrid(vtkSmartPointer<vtkDataSet> data) {
         rectilinear->GetExtent(extent);
     else
         return data;
-    // Point and cell values would need different images.
-    if (data->GetPointData()->GetNumberOfArrays() > 0 && data->GetCellData()->GetNumberOfArrays() > 0) return data;
-    int size[3];
-    vtkIdType stride[3], count = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        size[axis] = extent[2 * axis + 1] - extent[2 * axis] + 1;
-        stride[axis] = count;
-        count *= size[axis];
-    }
-    if (count != data->GetNumberOfPoints() || count < 2) return data;
-    double first[3];
-    data->GetPoint(0, first);
-    volume::StoredGrid grid{{size[0], size[1], size[2]}, {first[0], first[1], first[2]}, glm::dmat3(0)};
-    double coarsest = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (size[axis] < 2) continue;
-        double last[3];
-        data->GetPoint(stride[axis] * (size[axis] - 1), last);
-        grid.steps[axis] = (glm::dvec3(last[0], last[1], last[2]) - grid.origin) / double(size[axis] - 1);
-        if (!(glm::length(grid.steps[axis]) > 0)) return data;
-        coarsest = std::max(coarsest, glm::length(grid.steps[axis]));
-    }
-    const volume::UprightGrid straight = volume::upright(withoutFlatAxes(grid));
-    if (!straight.note.empty()) return data; // it is sampled where it lies
-    for (vtkIdType n = 0; n < count; ++n) {
-        double place[3];
-        data->GetPoint(n, place);
-        glm::dvec3 wanted = grid.origin;
-        for (int axis = 0; axis < 3; ++axis) wanted += grid.steps[axis] * double(n / stride[axis] % size[axis]);
-        for (int axis = 0; axis < 3; ++axis) {
-            const double step = straight.lattice.size[axis] > 1 ? straight.lattice.spacing[axis] : coarsest;
-            if (!(std::abs(place[axis] - wanted[axis]) <= 1e-3 * step)) return data;
-        }
-    }
-    vtkNew<vtkImageData> image;
-    const glm::dmat3 steps = withoutFlatAxes(grid).steps;
-    image->SetDimensions(size);
-    image->SetOrigin(first);
-    for (int axis = 0; axis < 3; ++axis)
-        for (int row = 0; row < 3; ++row)
-            image->GetDirectionMatrix()->SetElement(row, axis, steps[axis][row] / glm::length(steps[axis]));
-    image->SetSpacing(glm::length(steps[0]), glm::length(steps[1]), glm::length(steps[2]));
-    image->GetPointData()->ShallowCopy(data->GetPointData());
-    image->GetCellData()->ShallowCopy(data->GetCellData());
-    image->GetFieldData()->ShallowCopy(data->GetFieldData());
-    return image;
+    if (hasBoth(data)) return data;
+    const GridPoints points(extent);
+    if (points.count != data->GetNumberOfPoints() || points.count < 2) return data;
+    if (const std::optional<volume::StoredGrid> grid = evenGridOf(data, points)) return evenImage(data, *grid);
+    const vtkSmartPointer<vtkDataSet> grid = unevenGrid(data, points);
+    return grid != nullptr ? grid : data;
 }
 
 vtkSmartPointer<vtkDataSet> uprightImage(vtkImageData* image, std::string& note) {
@@ -140,27 +252,12 @@ vtkSmartPointer<vtkDataSet> uprightImage(vtkImageData* image, std::string& note)
     for (int axis = 0; axis < 3; ++axis) points.origin += points.steps[axis] * double(extent[2 * axis]);
     const volume::UprightGrid grid = volume::upright(points);
     note = grid.note;
-    volume::StoredGrid inner = points; // of cells: an axis with one layer of points has one layer of cells
-    for (int axis = 0; axis < 3; ++axis) inner.size[axis] = std::max(1, points.size[axis] - 1);
-    const volume::UprightGrid cells = volume::upright(inner);
     vtkNew<vtkImageData> out;
     const volume::Lattice& lattice = grid.lattice;
     out->SetDimensions(lattice.size.x, lattice.size.y, lattice.size.z);
     out->SetOrigin(lattice.origin.x, lattice.origin.y, lattice.origin.z);
     out->SetSpacing(lattice.spacing.x, lattice.spacing.y, lattice.spacing.z);
-    out->GetFieldData()->ShallowCopy(image->GetFieldData());
-    if (grid.asStored()) {
-        out->GetPointData()->ShallowCopy(image->GetPointData());
-        out->GetCellData()->ShallowCopy(image->GetCellData());
-        return out;
-    }
-    const auto turn = [](vtkDataSetAttributes* from, vtkDataSetAttributes* to, const volume::UprightGrid& by) {
-        for (int i = 0; i < from->GetNumberOfArrays(); ++i)
-            if (vtkDataArray* array = from->GetArray(i))
-                if (std::size_t(array->GetNumberOfTuples()) == by.lattice.count()) to->AddArray(inOrder(array, by));
-    };
-    turn(image->GetPointData(), out->GetPointData(), grid);
-    turn(image->GetCellData(), out->GetCellData(), cells);
+    turnArrays(image, out, points, grid);
     return out;
 }
 

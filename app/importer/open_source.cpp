@@ -185,7 +185,7 @@ std::vector<Block> readBlocks(const Source& source, int time) {
     std::vector<Block> kept;
     for (std::size_t i = 0; i < blocks.size(); ++i)
         if (dimensions[i] == most) {
-            kept.push_back({blocks[i].name, asEvenGrid(blocks[i].data), {}});
+            kept.push_back({blocks[i].name, asAlignedGrid(blocks[i].data), {}});
             if (auto* image = vtkImageData::SafeDownCast(kept.back().data))
                 kept.back().data = uprightImage(image, kept.back().note);
         }

@@ -1,5 +1,6 @@
 #include "app/importer/sampler.h"
 
+#include "app/importer/node_values.h"
 #include "app/importer/present.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <vtkCell.h>
 #include <vtkCellType.h>
 #include <vtkGenericCell.h>
-#include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 
@@ -19,6 +19,20 @@ namespace {
 // Directions that no mesh is aligned with.
 constexpr double kAside[3] = {0.31e-5, 0.47e-5, 0.59e-5};
 constexpr double kSlack = 3e-5; // cells, more than kAside
+
+/// A place in space as cells of a lattice along an axis, and back.
+double cellsAt(const volume::Lattice& lattice, int axis, double place) {
+    return (lattice.axes.toSheet(axis, place) - lattice.origin[axis]) / lattice.spacing[axis];
+}
+double placeAt(const volume::Lattice& lattice, int axis, double cells) {
+    return lattice.axes.toSpace(axis, lattice.origin[axis] + lattice.spacing[axis] * cells);
+}
+
+/// A coordinate within a cell; one of its borders where the sample lies there, as it was looked up beside it (kAside).
+double onBorder(double pcoord) {
+    const double border = std::round(pcoord);
+    return std::abs(pcoord - border) < kSlack ? border : pcoord;
+}
 
 /// Weights of the corners of a cell at a place in its own coordinates. Those of a polyhedron and a polygon are by
 /// InterpolateFunctions only at places of space.
@@ -48,6 +62,15 @@ std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lat
     double largest = 0;
     for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, box[2 * axis + 1] - box[2 * axis]);
     const std::vector<std::uint8_t> present = presentCells(mesh);
+    std::vector<double> lookedUp[3]; // where samples are looked up along each axis
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < lattice.size[axis]; ++i) {
+            const double place = placeAt(lattice, axis, i);
+            const bool last = i == lattice.size[axis] - 1 && lattice.size[axis] > 1 &&
+                              std::abs(place - border.hi[axis]) < 1e-3 * (place - placeAt(lattice, axis, i - 1));
+            const bool flat = !(box[2 * axis + 1] - box[2 * axis] > 1e-9 * largest);
+            lookedUp[axis].push_back(placeAt(lattice, axis, i + (flat ? 0 : last ? -1 : 1) * kAside[axis]));
+        }
     for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c) {
         if (!volume::isPresent(present, std::size_t(c))) continue;
         double bounds[6];
@@ -61,8 +84,8 @@ std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lat
                 end[axis] = lattice.size[axis];
                 continue;
             }
-            const double lo = (bounds[2 * axis] - lattice.origin[axis]) / lattice.spacing[axis];
-            const double hi = (bounds[2 * axis + 1] - lattice.origin[axis]) / lattice.spacing[axis];
+            const double lo = cellsAt(lattice, axis, bounds[2 * axis]);
+            const double hi = cellsAt(lattice, axis, bounds[2 * axis + 1]);
             const double size = lattice.size[axis];
             begin[axis] = static_cast<int>(std::clamp(std::ceil(lo - kSlack), 0.0, size));
             end[axis] = static_cast<int>(std::clamp(std::floor(hi + kSlack) + 1, 0.0, size));
@@ -79,23 +102,14 @@ std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lat
                     if (sampling->cells[at] >= 0) continue;
                     const int index[3] = {i, j, k};
                     double x[3], closest[3], pcoords[3], distance2 = 0;
-                    for (int axis = 0; axis < 3; ++axis) {
-                        const double place = lattice.origin[axis] + lattice.spacing[axis] * index[axis];
-                        const bool last = index[axis] == lattice.size[axis] - 1 && lattice.size[axis] > 1 &&
-                                          std::abs(place - border.hi[axis]) < 1e-3 * lattice.spacing[axis];
-                        const bool flat = !(box[2 * axis + 1] - box[2 * axis] > 1e-9 * largest);
-                        x[axis] = lattice.origin[axis] + lattice.spacing[axis] * (index[axis] + (flat   ? 0
-                                                                                                 : last ? -1
-                                                                                                        : 1) *
-                                                                                                    kAside[axis]);
-                    }
+                    for (int axis = 0; axis < 3; ++axis) x[axis] = lookedUp[axis][std::size_t(index[axis])];
                     int subId = 0;
                     const int inside = cell->EvaluatePosition(x, closest, subId, pcoords, distance2, weights.data());
                     if (inside != 1 || (cell->GetCellDimension() < 3 && !(distance2 <= 1e-18 * largest * largest)))
                         continue;
                     sampling->cells[at] = static_cast<std::int32_t>(c);
                     for (std::size_t axis = 0; axis < 3; ++axis)
-                        sampling->pcoords[at * 3 + axis] = static_cast<float>(pcoords[axis]);
+                        sampling->pcoords[at * 3 + axis] = static_cast<float>(onBorder(pcoords[axis]));
                 }
     }
     return sampling;
@@ -152,35 +166,23 @@ void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array
 
 namespace {
 
-/// Values of cells averaged to the points of the cells, without those that are NaN.
-std::vector<double> averagedToPoints(vtkDataSet* mesh, vtkDataArray* cells, int component) {
-    std::vector<double> sums(std::size_t(mesh->GetNumberOfPoints()), 0);
-    std::vector<std::int32_t> counts(sums.size(), 0);
-    vtkNew<vtkIdList> points;
-    for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c) {
-        const double value = cells->GetComponent(c, component);
-        if (std::isnan(value)) continue;
-        mesh->GetCellPoints(c, points);
-        for (vtkIdType p = 0; p < points->GetNumberOfIds(); ++p) {
-            const auto point = std::size_t(points->GetId(p));
-            if (point >= sums.size()) continue;
-            sums[point] += value;
-            ++counts[point];
-        }
-    }
-    for (std::size_t p = 0; p < sums.size(); ++p) sums[p] /= std::max(counts[p], 1);
-    return sums;
+/// Whether a sample lies in the middle of its cell. One there was looked up slightly beside it (kAside).
+bool isInMiddle(const double pcoords[3], const double middle[3]) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(pcoords[axis] - middle[axis]) < kSlack)) return false;
+    return true;
 }
 
 } // namespace
 
 void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells, int component, float* out,
                  std::vector<std::uint8_t>& mask) {
-    const std::vector<double> smoothed = averagedToPoints(mesh, cells, component);
+    std::vector<double> smoothed; // at points, once a sample needs them
     const auto atPoint = [&](vtkIdType p) { return std::size_t(p) < smoothed.size() ? smoothed[std::size_t(p)] : 0; };
     vtkNew<vtkGenericCell> cell;
     std::vector<double> weights(64);
     std::int32_t loaded = -1;
+    bool isSloped = false;
     double own = 0, atMiddle = 0, least = 0, most = 0, middle[3] = {};
     std::size_t points = 0;
     const auto interpolated = [&](const double pcoords[3]) {
@@ -198,7 +200,21 @@ void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells
             cell->GetParametricCenter(middle);
             points = static_cast<std::size_t>(cell->GetNumberOfPoints());
             if (weights.size() < points) weights.resize(points);
-            own = least = most = cells->GetComponent(c, component);
+            own = cells->GetComponent(c, component);
+            isSloped = false;
+        }
+        if (std::isnan(own)) {
+            mask[at] = 0;
+            continue;
+        }
+        out[at] = static_cast<float>(own);
+        const double pcoords[3] = {sampling.pcoords[at * 3], sampling.pcoords[at * 3 + 1],
+                                   sampling.pcoords[at * 3 + 2]};
+        if (isInMiddle(pcoords, middle)) continue;
+        if (smoothed.empty()) smoothed = nodeValues(mesh, cells, component);
+        if (!isSloped) {
+            isSloped = true;
+            least = most = own;
             for (std::size_t p = 0; p < points; ++p) {
                 const double value = atPoint(cell->GetPointId(int(p)));
                 least = std::min(least, value);
@@ -206,16 +222,7 @@ void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells
             }
             atMiddle = interpolated(middle);
         }
-        if (std::isnan(own)) {
-            mask[at] = 0;
-            continue;
-        }
-        const double pcoords[3] = {sampling.pcoords[at * 3], sampling.pcoords[at * 3 + 1],
-                                   sampling.pcoords[at * 3 + 2]};
-        // A sample at the centre was looked up slightly beside it (kAside): it still gets exactly the cell's value.
-        bool inMiddle = true;
-        for (int axis = 0; axis < 3; ++axis) inMiddle = inMiddle && std::abs(pcoords[axis] - middle[axis]) < kSlack;
-        const double value = inMiddle ? own : own + interpolated(pcoords) - atMiddle;
+        const double value = own + interpolated(pcoords) - atMiddle;
         out[at] = static_cast<float>(std::clamp(value, least, most));
     }
 }

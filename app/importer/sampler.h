@@ -29,10 +29,10 @@ std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lat
 void sampleArray(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* array, bool ofCells, int component,
                  volume::ScalarType type, void* out, std::vector<std::uint8_t>& mask);
 
-/// One component of an array of cells at every sample: the value of the cell, plus the change of the values averaged to
-/// points from the centre of the cell to the sample, clamped to the range of those points. So a sample at the centre
-/// has the cell's value, and linear fields are reproduced. NaN is no value: such cells are absent in `mask`, and take
-/// no part in the averages.
+/// One component of an array of cells at every sample: the value of the cell, plus the change of the values at points
+/// (node_values.h) from the centre of the cell to the sample, clamped to the range of those points. So a sample at the
+/// centre has the cell's value, and linear fields are linear up to the border. NaN is no value: such cells are absent
+/// in `mask`, and their neighbours do not know of them.
 void sampleCells(vtkDataSet* mesh, const Sampling& sampling, vtkDataArray* cells, int component, float* out,
                  std::vector<std::uint8_t>& mask);
 

@@ -147,9 +147,7 @@ Request parseRequest(const std::string& line) {
     std::string word;
     Request r;
     in >> word >> r.file >> r.block >> r.array >> r.component >> r.time;
-    in >> r.lattice.size.x >> r.lattice.size.y >> r.lattice.size.z;
-    in >> r.lattice.origin.x >> r.lattice.origin.y >> r.lattice.origin.z;
-    in >> r.lattice.spacing.x >> r.lattice.spacing.y >> r.lattice.spacing.z;
+    r.lattice = volume::parseLatticeWords(in);
     if (!in || word != "frame") throw std::runtime_error("bad request");
     return r;
 }
@@ -184,8 +182,8 @@ void sendRanges(State& state, const std::string& line) {
     std::istringstream in(line);
     std::string word;
     std::size_t fileIndex = 0, block = 0;
-    int arrayIndex = 0, time = 0;
-    in >> word >> fileIndex >> block >> arrayIndex >> time;
+    int arrayIndex = 0, time = 0, between = 0;
+    in >> word >> fileIndex >> block >> arrayIndex >> time >> between;
     if (!in || fileIndex >= state.files.size()) throw std::runtime_error("bad request");
     OpenFile& file = state.files[fileIndex];
     if (block >= file.blocks.size() || arrayIndex < 0 || arrayIndex >= int(file.blocks[block].arrays.size()) ||
@@ -196,7 +194,7 @@ void sendRanges(State& state, const std::string& line) {
     const ArrayRef& array = ref.arrays[std::size_t(arrayIndex)];
     const Block* at = blockAt(loaded.blocks, file.blocks, block);
     vtkDataArray* from = at != nullptr ? findArray(at->data, array) : nullptr;
-    sendMessage(MessageKind::Header, rangesJson(at != nullptr ? at->data : nullptr, from, array));
+    sendMessage(MessageKind::Header, rangesJson(at != nullptr ? at->data : nullptr, from, array, between != 0));
 }
 
 /// The words of a command line; of "-" those from stdin, each ended by a zero byte, up to an empty one.

@@ -249,8 +249,11 @@ TEST_F(FoamTexts, PolyhedraAreDivided) {
     const OpenedCase opened = openCases({(folder_ / "c").string()}, options);
     EXPECT_EQ(opened.present("T"), 512u);
     EXPECT_TRUE(opened.isNoted("1 of 2 cells are other polyhedra"));
-    EXPECT_EQ(opened.at("T", {0, 3, 3}), 5);
-    EXPECT_EQ(opened.at("T", {7, 3, 3}), 6);
+    // The slope from one cell to the other goes on to the walls.
+    EXPECT_GE(opened.at("T", {0, 3, 3}), 4);
+    EXPECT_LE(opened.at("T", {0, 3, 3}), 5);
+    EXPECT_GT(opened.at("T", {7, 3, 3}), 6);
+    EXPECT_LT(opened.at("T", {7, 3, 3}), 7);
 }
 
 TEST_F(FoamTexts, ZonesAreALabel) {

@@ -235,8 +235,9 @@ TEST_F(MeshFormats, Fluent) {
         const Field field = dataset.read(p, 0, 0);
         for (std::size_t i = 0; i < field.count(); ++i) {
             ASSERT_TRUE(field.present(i));
-            EXPECT_GE(field.value(i), 300) << parameter.name;
-            EXPECT_LE(field.value(i), 2000) << parameter.name;
+            // The slope from one cell to the other goes on to the walls, and the range says so.
+            EXPECT_GE(field.value(i), parameter.ranges[0].lo - 1e-3) << parameter.name;
+            EXPECT_LE(field.value(i), parameter.ranges[0].hi + 1e-3) << parameter.name;
         }
         EXPECT_LT(field.value(0), field.value(3)) << parameter.name;
     }

@@ -14,7 +14,7 @@ namespace {
 using test::ccLattice;
 using test::sampled;
 
-constexpr int kBins = 16;
+constexpr int kSummaryBins = 16;
 
 /// Three parameters with masks of their own, the third a noisy linear function of the first.
 Dataset threeChannels(const Lattice& lattice) {
@@ -41,7 +41,7 @@ StatisticsQuery fullQuery() {
     StatisticsQuery query;
     query.channels = {0, 1, 2};
     query.pairs = allPairs(3);
-    query.bins = kBins;
+    query.bins = kSummaryBins;
     query.meanOf = 1;
     query.doi = [](std::span<const float> v, glm::dvec3) { return doiOf(v); };
     return query;
@@ -49,7 +49,7 @@ StatisticsQuery fullQuery() {
 
 int binOf(const Range& range, double value) {
     if (value < range.lo || value > range.hi) return -1;
-    return std::min(kBins - 1, int((value - range.lo) / (range.hi - range.lo) * kBins));
+    return std::min(kSummaryBins - 1, int((value - range.lo) / (range.hi - range.lo) * kSummaryBins));
 }
 
 TEST(Statistics, AgreesWithBruteForce) {
@@ -73,8 +73,8 @@ TEST(Statistics, AgreesWithBruteForce) {
         const std::size_t count = fields[0].count();
         for (int c = 0; c < 3; ++c) {
             const ChannelStatistics& channel = result.channels[std::size_t(c)];
-            std::vector<std::uint64_t> bins(kBins);
-            std::vector<double> focus(kBins);
+            std::vector<std::uint64_t> bins(kSummaryBins);
+            std::vector<double> focus(kSummaryBins);
             for (const bool inside : {true, false}) {
                 double n = 0, sum = 0, squares = 0, lo = INFINITY, hi = -INFINITY;
                 for (std::size_t i = 0; i < count; ++i) {
@@ -110,13 +110,13 @@ TEST(Statistics, AgreesWithBruteForce) {
             EXPECT_NEAR(channel.all.samples, channel.inside.samples + channel.outside.samples,
                         1e-6 * channel.all.samples);
             EXPECT_EQ(channel.histogram.count, bins);
-            for (std::size_t b = 0; b < kBins; ++b)
+            for (std::size_t b = 0; b < kSummaryBins; ++b)
                 EXPECT_NEAR(channel.histogram.focus[b], focus[b], 6e-4 * double(1 + bins[b]));
         }
         for (const JointHistogram& joint : result.joint) {
-            std::vector<std::uint64_t> bins(kBins * kBins);
-            std::vector<double> focus(kBins * kBins);
-            std::vector<double> third(kBins * kBins), thirdCount(kBins * kBins);
+            std::vector<std::uint64_t> bins(kSummaryBins * kSummaryBins);
+            std::vector<double> focus(kSummaryBins * kSummaryBins);
+            std::vector<double> third(kSummaryBins * kSummaryBins), thirdCount(kSummaryBins * kSummaryBins);
             double n = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
             const auto both = [&](std::size_t i) {
                 return !std::isnan(value(joint.x, i)) && !std::isnan(value(joint.y, i));
@@ -129,11 +129,11 @@ TEST(Statistics, AgreesWithBruteForce) {
                 my += y;
                 const int bx = binOf(joint.xRange, x), by = binOf(joint.yRange, y);
                 if (bx < 0 || by < 0) continue;
-                ++bins[std::size_t(by * kBins + bx)];
-                focus[std::size_t(by * kBins + bx)] += doi(i);
+                ++bins[std::size_t(by * kSummaryBins + bx)];
+                focus[std::size_t(by * kSummaryBins + bx)] += doi(i);
                 if (std::isnan(value(1, i))) continue;
-                third[std::size_t(by * kBins + bx)] += std::clamp(double(value(1, i)), -20.0, 100.0);
-                ++thirdCount[std::size_t(by * kBins + bx)];
+                third[std::size_t(by * kSummaryBins + bx)] += std::clamp(double(value(1, i)), -20.0, 100.0);
+                ++thirdCount[std::size_t(by * kSummaryBins + bx)];
             }
             for (std::size_t b = 0; b < bins.size(); ++b) {
                 EXPECT_EQ(std::isnan(joint.mean[b]), thirdCount[b] == 0);

@@ -17,6 +17,11 @@ inline std::string meshProvenance(double cells, glm::ivec3 samples) {
            " samples";
 }
 
+/// A mesh whose cells are boxes between planes, with one sample for each: nothing is resampled.
+inline std::string cellsProvenance(double cells) {
+    return "a mesh of " + std::to_string(static_cast<long long>(cells)) + " cells, one sample for each";
+}
+
 /// Data of several different grids, or of points that do not fill a grid, sampled on one grid.
 inline constexpr std::string_view kFromGrids = "resampled from several different grids",
                                   kFromPoints = "resampled from scattered points";

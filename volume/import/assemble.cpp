@@ -89,6 +89,7 @@ struct Assembly {
     std::vector<Parameter> parameters;
     std::vector<std::vector<Contribution>> feeds; ///< per parameter; empty = the generated label
     BlockLabel label;                             ///< the generated label
+    bool between = false;                         ///< samples lie between the middles of cells
 
     Found at(const Contribution& from, double time) const {
         const FileGroup& group = groups[from.group];
@@ -149,8 +150,9 @@ struct Assembly {
                 progress.advance(done++ / double(group.frames.size() * feeds.size()));
                 const Found found = inFile(group, from, frame);
                 if (found.block == nullptr) continue;
-                const std::vector<Range> own =
-                    found.block->ranges ? found.block->ranges(found.array, found.localTime) : std::vector<Range>{};
+                const std::vector<Range> own = found.block->ranges
+                                                   ? found.block->ranges(found.array, found.localTime, between)
+                                                   : std::vector<Range>{};
                 if (own.empty() || (!all.empty() && own.size() != all.size())) return {};
                 if (all.empty()) all = own;
                 for (std::size_t i = 0; i < own.size(); ++i)
@@ -290,7 +292,8 @@ std::optional<double> cellsOf(const std::vector<FileGroup>& groups) {
 
 } // namespace
 
-Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, const Progress& progress) {
+Assembled assemble(std::vector<OpenedFile> files, const ImportOptions& options, bool readSamples,
+                   const Progress& progress) {
     Assembled result;
     auto all = std::make_shared<Assembly>();
     all->files = std::move(files);
@@ -298,7 +301,9 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
         if (file.blocks.empty()) throw Error("holds no data", file.entry.path);
     all->groups = groupsInTime(all->files);
     DatasetInfo& info = result.dataset.info;
-    all->lattice = chooseLattice(all->files, gridSize, info.bounds, result.notes);
+    const ChosenGrid chosen = chooseGrid(all->files, options, info.bounds, result.notes);
+    all->lattice = chosen.lattice;
+    all->between = !chosen.aligned;
     info.name = dataName(all->files);
     info.lattice = all->lattice;
     info.times = all->times = timesOf(all->groups);
@@ -316,7 +321,7 @@ Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool read
     result.mesh = found.blocks > 0;
     std::string origin;
     if (const std::optional<double> cells = cellsOf(all->groups)) {
-        origin = meshProvenance(*cells, all->lattice.size);
+        origin = chosen.onePerCell ? cellsProvenance(*cells) : meshProvenance(*cells, all->lattice.size);
         result.ranges = [all](int parameter, const Progress& by) { return all->ranges(parameter, by); };
     } else if (found.scattered || all->lattice != all->files.front().blocks.front().lattice) {
         origin = found.scattered ? kFromPoints : kFromGrids;

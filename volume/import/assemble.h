@@ -3,6 +3,7 @@
 #include "volume/base/progress.h"
 #include "volume/field/dataset.h"
 #include "volume/import/file_groups.h"
+#include "volume/import/import_options.h"
 
 #include <functional>
 #include <string>
@@ -24,9 +25,10 @@ struct Assembled {
 /// Assembles files into one data set: files of a group are consecutive times, arrays of equal name from several meshes
 /// are merged onto one grid (the first that has a sample is used), several files on one grid add parameters. If there
 /// is no label, `region` is created from the names of mesh blocks. If files store an array in different types, all its
-/// frames get one type that holds their numbers (commonType). `gridSize` (0 = automatic) is for meshes. Without
+/// frames get one type that holds their numbers (commonType). `options` say on which grid meshes are sampled. Without
 /// `readSamples` no sample is read (the values of a created label are then not yet known). Throws Error when the files
 /// do not fit together.
-Assembled assemble(std::vector<OpenedFile> files, glm::ivec3 gridSize, bool readSamples, const Progress& progress);
+Assembled assemble(std::vector<OpenedFile> files, const ImportOptions& options, bool readSamples,
+                   const Progress& progress);
 
 } // namespace tessera::volume

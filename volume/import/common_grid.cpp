@@ -1,6 +1,7 @@
 #include "volume/import/common_grid.h"
 
 #include "volume/base/error.h"
+#include "volume/import/mesh_planes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +19,25 @@ std::string words(glm::ivec3 size) {
     return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z);
 }
 
+/// Whether planes agree to 1e-4 of the least length beside each.
+bool samePlanes(const AxisMap& a, const AxisMap& b) {
+    if (a.of() != b.of()) return false;
+    const std::vector<double>&p = a.planes(), &q = b.planes();
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        double length = std::numeric_limits<double>::max();
+        if (i > 0) length = p[i] - p[i - 1];
+        if (i + 1 < p.size()) length = std::min(length, p[i + 1] - p[i]);
+        if (std::abs(p[i] - q[i]) > 1e-4 * length) return false;
+    }
+    return true;
+}
+
 bool sameLattice(const Lattice& a, const Lattice& b) {
     if (a.size != b.size) return false;
     for (int axis = 0; axis < 3; ++axis) {
+        const AxisMap *mapA = a.axes[axis], *mapB = b.axes[axis];
+        if ((mapA == nullptr) != (mapB == nullptr)) return false;
+        if (mapA != nullptr && !samePlanes(*mapA, *mapB)) return false;
         const double tolerance = 1e-4 * a.spacing[axis];
         if (std::abs(a.spacing[axis] - b.spacing[axis]) * std::max(a.size[axis] - 1, 1) > tolerance ||
             std::abs(a.origin[axis] - b.origin[axis]) > tolerance)
@@ -35,7 +52,9 @@ struct Meshes {
     glm::dvec3 perLength{0}; ///< sum over the cells of 1 / extent
     double cells = 0;
     bool cellData = true;
+    bool moves = false; ///< then samples lie in cells, so that there are as many at each time
     std::vector<const FileBlock*> blocks;
+    double blocksOfFirst = 0, cellsOfFirst = 0; ///< of the meshes of the first file of each group
 };
 
 /// Samples per axis: about one per cell of harmonic-mean extent, at most 1024 an axis and 16 M in all, and not more
@@ -64,8 +83,33 @@ glm::dvec3 samplesForMesh(const Meshes& meshes) {
     return n;
 }
 
-/// The grid a mesh is sampled on: in the middle of cells for cell data, else from border to border.
-Lattice gridForMesh(const Meshes& meshes, glm::ivec3 wanted) {
+/// The box of a block: that of its cells, or from its first sample to its last.
+Box extentOf(const FileBlock& block) {
+    const Lattice& own = block.lattice;
+    return block.mesh || block.cellData ? block.box : Box{own.origin, own.position(own.size - 1)};
+}
+
+/// The events of a block; a grid's cells lie between its samples, or around them for values of cells.
+std::array<AxisEvents, 3> eventsOf(const FileBlock& block) {
+    if (block.mesh) return block.events;
+    const Lattice& own = block.lattice;
+    const int more = block.cellData ? 1 : 0; // borders than samples
+    std::array<AxisEvents, 3> events;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (own.size[axis] + more < 2) continue;
+        std::vector<double> borders;
+        for (int i = 0; i < own.size[axis] + more; ++i)
+            borders.push_back(own.axes.toSpace(axis, own.origin[axis] + own.spacing[axis] * (i - 0.5 * more)));
+        const int right = (axis + 1) % 3, up = (axis + 2) % 3;
+        const glm::dvec3 size = glm::max(extentOf(block).size(), 1e-300);
+        events[std::size_t(axis)] =
+            eventsOfGrid(borders, double(own.size[right]) * own.size[up], size[right] * size[up]);
+    }
+    return events;
+}
+
+/// The even grid a mesh is sampled on: in the middle of cells for cell data, else from border to border.
+Lattice evenGridForMesh(const Meshes& meshes, glm::ivec3 wanted) {
     const Box& box = meshes.box;
     const bool cellData = meshes.cellData;
     const glm::dvec3 extent = box.size(), n = samplesForMesh(meshes);
@@ -90,10 +134,57 @@ Lattice gridForMesh(const Meshes& meshes, glm::ivec3 wanted) {
     return grid;
 }
 
-/// The box of a block: that of its cells, or from its first sample to its last.
-Box extentOf(const FileBlock& block) {
-    const Lattice& own = block.lattice;
-    return block.mesh || block.cellData ? block.box : Box{own.origin, own.position(own.size - 1)};
+/// Whether all lengths between planes are the same, to 1e-3.
+bool areEven(const std::vector<double>& planes) {
+    const double step = (planes.back() - planes.front()) / double(planes.size() - 1);
+    for (std::size_t i = 1; i < planes.size(); ++i)
+        if (!(std::abs(planes[i] - planes[i - 1] - step) <= 1e-3 * step)) return false;
+    return true;
+}
+
+/// The grid between the planes of a mesh: samples in the middle of cells for cell data and where there are several
+/// blocks, else on the planes. An axis whose planes are even, or not known, is as that of the even grid.
+ChosenGrid planeGridForMesh(const Meshes& meshes, std::vector<std::string>& notes) {
+    PlanesOfMesh asked;
+    asked.box = meshes.box;
+    const bool ofCells = meshes.cellData || meshes.blocksOfFirst > 1;
+    asked.mostSamplesOfAll = std::min(16e6, std::max(16 * meshes.cells, 50e3));
+    bool areBoxes = true;
+    for (const FileBlock* block : meshes.blocks) {
+        const Box extent = extentOf(*block);
+        areBoxes = areBoxes && (block->boxes || !block->mesh);
+        if (meshes.blocks.size() <= 1000) asked.regions.push_back(extent);
+        const std::array<AxisEvents, 3> events = eventsOf(*block);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            asked.events[axis] = joinedEvents(asked.events[axis], events[axis]);
+    }
+    const std::array<AxisPlanes, 3> planes = planesOfMesh(asked, notes);
+    Meshes even = meshes;
+    even.cellData = ofCells;
+    ChosenGrid out{.lattice = evenGridForMesh(even, glm::ivec3(0)), .aligned = true, .onePerCell = meshes.cellData};
+    AxisMaps axes;
+    const glm::dvec3 extent = meshes.box.size();
+    const double largest = std::max({extent.x, extent.y, extent.z});
+    for (int axis = 0; axis < 3; ++axis) {
+        const AxisPlanes& own = planes[std::size_t(axis)];
+        if (!(extent[axis] > 1e-9 * largest)) continue;
+        out.onePerCell = out.onePerCell && own.onePerCell;
+        out.aligned = out.aligned && own.aligned;
+        if (own.planes.size() < 2) continue;
+        const auto intervals = int(own.planes.size()) - 1;
+        const bool inCells = ofCells || intervals == 1;
+        if (!areEven(own.planes)) {
+            axes.of[std::size_t(axis)] =
+                std::make_shared<const AxisMap>(inCells ? AxisMap::Of::Cells : AxisMap::Of::Points, own.planes);
+            continue;
+        }
+        out.lattice.size[axis] = intervals + (inCells ? 0 : 1);
+        out.lattice.spacing[axis] = extent[axis] / intervals;
+        out.lattice.origin[axis] = meshes.box.lo[axis] + (inCells ? out.lattice.spacing[axis] * 0.5 : 0);
+    }
+    out.lattice = withAxes(out.lattice, std::move(axes));
+    out.onePerCell = out.onePerCell && areBoxes;
+    return out;
 }
 
 bool sameBox(const Box& a, const Box& b) {
@@ -125,7 +216,41 @@ void checkGrids(const std::vector<OpenedFile>& files) {
 
 } // namespace
 
-Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize, Box& bounds,
+namespace {
+
+Meshes meshesOf(const std::vector<OpenedFile>& files) {
+    Meshes meshes;
+    std::set<std::string> groups;
+    std::map<std::string, Box> boxes;
+    for (const OpenedFile& file : files) {
+        const bool firstOfGroup = groups.insert(file.entry.group).second;
+        for (const FileBlock& block : file.blocks) {
+            const Lattice& own = block.lattice;
+            const Box extent = extentOf(block);
+            const bool counted = block.mesh || block.cells > 0;
+            meshes.box.lo = glm::min(meshes.box.lo, extent.lo);
+            meshes.box.hi = glm::max(meshes.box.hi, extent.hi);
+            const double count = counted ? block.cells : double(own.count());
+            meshes.cells += count;
+            meshes.perLength += count / (counted ? block.cellSize : own.spacing);
+            if (firstOfGroup && block.mesh) {
+                meshes.cellsOfFirst += block.cells;
+                ++meshes.blocksOfFirst;
+            }
+            meshes.cellData = meshes.cellData && block.cellData;
+            meshes.blocks.push_back(&block);
+            const auto [known, isNew] = boxes.emplace(
+                file.entry.group + "\n" + std::to_string(&block - file.blocks.data()) + block.name, extent);
+            meshes.moves = meshes.moves || (!isNew && block.mesh && !sameBox(known->second, extent));
+        }
+    }
+    meshes.cellData = meshes.cellData || meshes.moves;
+    return meshes;
+}
+
+} // namespace
+
+ChosenGrid chooseGrid(const std::vector<OpenedFile>& files, const ImportOptions& options, Box& bounds,
                       std::vector<std::string>& notes) {
     const FileBlock& first = files.front().blocks.front();
     bool equalGrids = true, anyMesh = false;
@@ -134,50 +259,34 @@ Lattice chooseLattice(const std::vector<OpenedFile>& files, glm::ivec3 gridSize,
             anyMesh = anyMesh || block.mesh;
             equalGrids = equalGrids && !block.mesh && !first.mesh && sameLattice(first.lattice, block.lattice);
         }
-    if (equalGrids) {
-        if (gridSize != glm::ivec3(0) && gridSize != first.lattice.size)
+    const bool wantsEven = options.grid == GridChoice::Even || options.gridSize != glm::ivec3(0);
+    if (equalGrids && (first.lattice.isEven() || !wantsEven)) {
+        if (options.gridSize != glm::ivec3(0) && options.gridSize != first.lattice.size)
             notes.push_back("already on a grid of " + words(first.lattice.size) + ": the requested grid is not used");
         bounds = extentOf(first);
-        return first.lattice;
+        return {first.lattice};
     }
     checkGrids(files);
-    Meshes meshes;
-    double cells = 0, blocks = 0;
-    bool moves = false; // a mesh of a series: then samples lie in cells, so that there are as many at each time
-    std::set<std::string> groups;
-    std::map<std::string, Box> boxes;
-    for (const OpenedFile& file : files) {
-        const bool firstOfGroup = groups.insert(file.entry.group).second;
-        for (const FileBlock& block : file.blocks) {
-            const Lattice& own = block.lattice;
-            const Box extent = extentOf(block);
-            meshes.box.lo = glm::min(meshes.box.lo, extent.lo);
-            meshes.box.hi = glm::max(meshes.box.hi, extent.hi);
-            const double count = block.mesh ? block.cells : double(own.count());
-            meshes.cells += count;
-            meshes.perLength += count / (block.mesh ? block.cellSize : own.spacing);
-            if (firstOfGroup && block.mesh) {
-                cells += block.cells;
-                ++blocks;
-            }
-            meshes.cellData = meshes.cellData && block.cellData;
-            meshes.blocks.push_back(&block);
-            const auto [known, isNew] = boxes.emplace(
-                file.entry.group + "\n" + std::to_string(&block - file.blocks.data()) + block.name, extent);
-            moves = moves || (!isNew && block.mesh && !sameBox(known->second, extent));
-        }
-    }
-    meshes.cellData = meshes.cellData || moves;
-    const Lattice grid = gridForMesh(meshes, gridSize);
+    const Meshes meshes = meshesOf(files);
+    ChosenGrid chosen;
+    if (wantsEven || meshes.moves) // what moves has other planes at each time
+        chosen.lattice = evenGridForMesh(meshes, options.gridSize);
+    else
+        chosen = planeGridForMesh(meshes, notes);
+    const Lattice& grid = chosen.lattice;
     const Box& box = meshes.box;
     bounds = box;
     for (int axis = 0; axis < 3; ++axis) // an axis without extent gets one layer of samples, or the requested number
         if (!(box.size()[axis] > 0)) bounds.hi[axis] = grid.position(grid.size - 1)[axis];
-    std::string note =
-        anyMesh ? "mesh of " + std::to_string(static_cast<long long>(cells)) + " cells" : "several different grids";
-    if (blocks > 1) note += " in " + std::to_string(int(blocks)) + " blocks";
-    notes.push_back(note + ", sampled on " + words(grid.size));
-    return grid;
+    const auto cells = static_cast<long long>(meshes.cellsOfFirst);
+    std::string note = anyMesh      ? "mesh of " + std::to_string(cells) + " cells"
+                       : equalGrids ? "a grid with uneven spacing"
+                                    : "several different grids";
+    if (meshes.blocksOfFirst > 1) note += " in " + std::to_string(int(meshes.blocksOfFirst)) + " blocks";
+    note += ", sampled on " + words(grid.size);
+    if (chosen.onePerCell) note += ", one sample for each cell";
+    notes.push_back(note);
+    return chosen;
 }
 
 } // namespace tessera::volume

@@ -43,19 +43,17 @@ public:
 
     Field frame(std::size_t file, std::size_t block, int array, int component, int time, const Lattice& target,
                 ScalarType type) {
-        char line[512];
-        std::snprintf(line, sizeof line, "frame %zu %zu %d %d %d %d %d %d %.17g %.17g %.17g %.17g %.17g %.17g\n", file,
-                      block, array, component, time, target.size.x, target.size.y, target.size.z, target.origin.x,
-                      target.origin.y, target.origin.z, target.spacing.x, target.spacing.y, target.spacing.z);
+        char line[128];
+        std::snprintf(line, sizeof line, "frame %zu %zu %d %d %d ", file, block, array, component, time);
         const std::lock_guard lock(mutex_);
-        child_.write(line);
+        child_.write(line + latticeWords(target) + "\n");
         const auto bytes = answer(file, MessageKind::Frame, target, type, {});
         return understood(file, [&] { return parseFrame(bytes, target, type); });
     }
 
-    std::vector<Range> ranges(std::size_t file, std::size_t block, int array, int time) {
+    std::vector<Range> ranges(std::size_t file, std::size_t block, int array, int time, bool between) {
         char line[128];
-        std::snprintf(line, sizeof line, "ranges %zu %zu %d %d\n", file, block, array, time);
+        std::snprintf(line, sizeof line, "ranges %zu %zu %d %d %d\n", file, block, array, time, between ? 1 : 0);
         const std::lock_guard lock(mutex_);
         child_.write(line);
         const auto text = answer(file, MessageKind::Header, Lattice{}, ScalarType::U8, {});
@@ -193,10 +191,10 @@ std::vector<std::vector<FileBlock>> openForeign(const std::vector<SeriesFile>& e
             block.resamples = true;
             std::vector<ScalarType> types;
             for (const Array& array : block.arrays) types.push_back(array.type);
-            block.ranges = [importer, f, p, kept](int array, int time) {
+            block.ranges = [importer, f, p, kept](int array, int time, bool between) {
                 const Kept from = kept[std::size_t(array)];
                 if (from.flags >= 0) return std::vector<Range>{}; // ranges of present samples are not known
-                return importer->ranges(f, p, from.index, time);
+                return importer->ranges(f, p, from.index, time, between);
             };
             block.read = [importer, f, p, kept, types](int array, int component, int time, const Lattice& target,
                                                        SliceRange) {

@@ -278,7 +278,7 @@ OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOpti
     std::vector<OpenedFile> files = openEach(entries, options, progress.part(0, 0.3));
     OpenedSeries opened;
     opened.format = files.front().blocks.empty() ? "" : files.front().blocks.front().format;
-    Assembled assembled = assemble(std::move(files), options.gridSize, readSamples, progress.part(0.3, 0.7));
+    Assembled assembled = assemble(std::move(files), options, readSamples, progress.part(0.3, 0.7));
     Dataset& dataset = opened.dataset;
     opened.notes = std::move(assembled.notes);
     formVectors(assembled, opened, options);

@@ -3,9 +3,11 @@
 #include "volume/base/describe.h"
 #include "volume/import/files/named_path.h"
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tessera::volume {
@@ -13,9 +15,17 @@ namespace tessera::volume {
 /// What becomes of options that fit nothing in the data. Sessions may hold units of other data.
 enum class Misfits { Refused, Ignored };
 
+/// The grid that meshes are sampled on, and grids with uneven spacing are kept on, if no size is stated.
+enum class GridChoice : std::uint8_t {
+    Planes, ///< where cells begin and end: layers keep their thickness, spacing may be uneven
+    Even    ///< one spacing per axis
+};
+inline constexpr std::string_view kGridChoiceNames[] = {"planes", "even"};
+
 /// What the user states about files that lack this information. Remembered per parameter name by the caller.
 struct ImportOptions {
-    glm::ivec3 gridSize{0}; ///< meshes are resampled to this grid; 0 = chosen from the number of cells
+    glm::ivec3 gridSize{0}; ///< meshes are resampled to this even grid; 0 = as `grid` says
+    GridChoice grid = GridChoice::Planes;
     std::string
         raw; ///< "dims=XxYxZ,type=u8,spacing=..,origin=..,components=N,times=N,big-endian,skip=BYTES" for headless raw
     /// Rules that make samples absent: "O2=region:0,3" (where the label has these values), "O2=0" (a value), "O2=nan".
@@ -42,8 +52,13 @@ struct ImportOptions {
     bool operator==(const ImportOptions&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.gridSize, FieldInfo{.key = "gridSize",
-                                       .doc = "Grid that meshes are resampled to; 0 = chosen by the number of cells",
+                                       .doc = "Even grid that meshes are resampled to; 0 = as grid says",
                                        .range = Range{0, 4096}});
+        visit(self.grid,
+              FieldInfo{.key = "grid",
+                        .doc = "Samples of meshes: between the planes where cells begin and end, with uneven "
+                               "spacing; or at even distances",
+                        .names = kGridChoiceNames});
         visit(self.raw, FieldInfo{"raw", "Layout of a raw file: dims=..,type=..,..."});
         visit(self.absent, FieldInfo{"absent", "Rules for absent samples: O2=region:0,3"});
         visit(self.rename, FieldInfo{"rename", "New parameter names, by the names in the file"});

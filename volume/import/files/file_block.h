@@ -3,6 +3,7 @@
 #include "volume/field/dataset.h"
 #include "volume/field/slices.h"
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -20,18 +21,30 @@ struct Array {
     bool operator==(const Array&) const = default;
 };
 
+/// Where cells of a mesh begin and end along an axis: sums over those that do at one place.
+struct AxisEvent {
+    double place = 0;
+    double begun = 0, ended = 0;                   ///< cells
+    double areaBegun = 0, areaEnded = 0;           ///< their cross-sections
+    double perLengthBegun = 0, perLengthEnded = 0; ///< 1 / extent
+    bool operator==(const AxisEvent&) const = default;
+};
+using AxisEvents = std::vector<AxisEvent>; ///< places rise
+
 /// One block of one file: a raw file, an image, a mesh, a region of a multi-block file.
 struct FileBlock {
-    std::string file;       ///< as the user named it
-    std::string format;     ///< "raw", "vti", "OpenFOAM", ...
-    std::string name;       ///< of the block, "" where the file is one block
-    bool resamples = false; ///< `read` can sample on any grid; a grid only on its own otherwise
-    bool mesh = false;      ///< cells that are sampled; else samples lie on `lattice` as they are
-    bool cellData = false;  ///< values belong to cells, so samples lie in the middle of cells, within `box`
-    Lattice lattice;        ///< of a grid
-    Box box;                ///< extent of a mesh, or of the cells of a grid
-    double cells = 0;       ///< of a mesh
-    glm::dvec3 cellSize{0}; ///< harmonic mean of the extents of a mesh's cells, per axis
+    std::string file;                 ///< as the user named it
+    std::string format;               ///< "raw", "vti", "OpenFOAM", ...
+    std::string name;                 ///< of the block, "" where the file is one block
+    bool resamples = false;           ///< `read` can sample on any grid; a grid only on its own otherwise
+    bool mesh = false;                ///< cells that are sampled; else samples lie on `lattice` as they are
+    bool cellData = false;            ///< values belong to cells, so samples lie in the middle of cells, within `box`
+    Lattice lattice;                  ///< of a grid; of an uneven one with its axes
+    Box box;                          ///< extent of a mesh, or of the cells of a grid
+    double cells = 0;                 ///< of a mesh, or an uneven grid
+    glm::dvec3 cellSize{0};           ///< harmonic mean of the extents of these cells, per axis
+    bool boxes = false;               ///< all cells of a mesh are boxes along the axes
+    std::array<AxisEvents, 3> events; ///< of a mesh, per axis; empty where they are not known
     std::string lengthUnit, timeUnit, provenance; ///< "" = not stated
     std::string timeName;                         ///< "" = not stated
     std::vector<std::string> notes;               ///< for the user: how the samples came about, what was left out
@@ -43,8 +56,9 @@ struct FileBlock {
     std::function<Field(int array, int component, int time, const Lattice& target, SliceRange slices)> read;
     bool inParts = false; ///< `read` gives any slices, of the grid alone; else only all of them
     /// Ranges of an array's own values, at points or cells: one per component, then for a vector that of its magnitude;
-    /// lo > hi where there is no value. Null, or empty, where they are not known.
-    std::function<std::vector<Range>(int array, int time)> ranges;
+    /// lo > hi where there is no value. Null, or empty, where they are not known. `between`: samples lie between the
+    /// middles of cells, and reach the values that these give at their corners.
+    std::function<std::vector<Range>(int array, int time, bool between)> ranges;
 };
 
 } // namespace tessera::volume

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -19,6 +20,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostBlocks = 100'000;
+constexpr std::size_t kMostEvents = 100'000; // of an axis
+constexpr std::size_t kNumbersOfEvent = 7;
 
 template <class T> T take(std::span<const std::byte> bytes, std::size_t at) {
     T value;
@@ -110,6 +113,75 @@ Quantity parseQuantity(const json& entry, std::size_t times, const std::string& 
     return quantity;
 }
 
+AxisMaps parseAxes(const json& list, const HeaderReader& reader) {
+    if (!list.is_array() || list.size() != 3) reader.fail("axes");
+    AxisMaps axes;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (list[axis].is_null()) continue;
+        const HeaderReader own{list[axis], reader.file, reader.place + "axes."};
+        if (!list[axis].is_object()) own.fail("");
+        const std::string of = own.text("of");
+        if (of != "cells" && of != "points") own.fail("of");
+        axes.of[axis] = std::make_shared<const AxisMap>(of == "cells" ? AxisMap::Of::Cells : AxisMap::Of::Points,
+                                                        own.numbers("planes", 2, kMostSamplesPerAxis + 1));
+    }
+    return axes;
+}
+
+AxisEvents parseEvents(const json& numbers, const HeaderReader& reader) {
+    if (!numbers.is_array() || numbers.size() % kNumbersOfEvent != 0 || numbers.size() > kNumbersOfEvent * kMostEvents)
+        reader.fail("events");
+    AxisEvents events(numbers.size() / kNumbersOfEvent);
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        AxisEvent& event = events[i];
+        double* const fields[] = {&event.place,     &event.begun,          &event.ended,         &event.areaBegun,
+                                  &event.areaEnded, &event.perLengthBegun, &event.perLengthEnded};
+        for (std::size_t n = 0; n < kNumbersOfEvent; ++n) {
+            const json& number = numbers[i * kNumbersOfEvent + n];
+            if (!number.is_number() || !std::isfinite(number.get<double>())) reader.fail("events");
+            *fields[n] = number.get<double>();
+            if (n > 0 && *fields[n] < 0) reader.fail("events");
+        }
+        if (i > 0 && !(event.place > events[i - 1].place)) reader.fail("events");
+    }
+    return events;
+}
+
+/// The cells of a mesh, or of an uneven grid.
+void parseCells(FileBlock& block, const HeaderReader& reader) {
+    block.cellSize = reader.triple("cellSize");
+    block.cells = reader.numbers("cells", 1, 1)[0];
+    for (int axis = 0; axis < 3; ++axis)
+        if (block.box.lo[axis] > block.box.hi[axis] || block.cellSize[axis] < 0) reader.fail("box");
+    if (!(block.cells >= 1)) reader.fail("cells");
+    block.boxes = reader.object.contains("boxes") && reader.flag("boxes");
+    const auto events = reader.object.find("events");
+    if (events == reader.object.end()) return;
+    if (!events->is_array() || events->size() != 3) reader.fail("events");
+    for (std::size_t axis = 0; axis < 3; ++axis) block.events[axis] = parseEvents((*events)[axis], reader);
+}
+
+void parseGrid(FileBlock& block, const HeaderReader& reader) {
+    const std::vector<double> dims = reader.numbers("dims", 3, 3);
+    block.lattice.spacing = reader.triple("spacing");
+    block.lattice.origin = reader.triple("origin");
+    double samples = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double n = dims[std::size_t(axis)];
+        if (!(n >= 1 && n <= kMostSamplesPerAxis) || n != std::floor(n)) reader.fail("dims");
+        if (!(block.lattice.spacing[axis] > 0)) reader.fail("spacing");
+        block.lattice.size[axis] = static_cast<int>(n);
+        samples *= n;
+    }
+    if (samples > 1e12) reader.fail("dims");
+    if (const auto axes = reader.object.find("axes"); axes != reader.object.end()) {
+        const glm::ivec3 size = block.lattice.size;
+        block.lattice = withAxes(block.lattice, parseAxes(*axes, reader));
+        if (block.lattice.size != size) reader.fail("axes");
+        parseCells(block, reader);
+    }
+}
+
 FileBlock parseBlock(const json& entry, const std::string& file, const std::string& place) {
     const HeaderReader reader{entry, file, place + "."};
     if (!entry.is_object()) reader.fail("");
@@ -128,30 +200,14 @@ FileBlock parseBlock(const json& entry, const std::string& file, const std::stri
     }
     block.mesh = reader.flag("mesh");
     block.cellData = (block.mesh || entry.contains("cellData")) && reader.flag("cellData");
-    if (block.mesh || block.cellData) {
+    if (block.mesh || block.cellData || entry.contains("axes")) {
         const std::vector<double> box = reader.numbers("box", 6, 6);
         block.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
     }
-    if (block.mesh) {
-        block.cellSize = reader.triple("cellSize");
-        block.cells = reader.numbers("cells", 1, 1)[0];
-        for (int axis = 0; axis < 3; ++axis)
-            if (block.box.lo[axis] > block.box.hi[axis] || block.cellSize[axis] < 0) reader.fail("box");
-        if (!(block.cells >= 1)) reader.fail("cells");
-    } else {
-        const std::vector<double> dims = reader.numbers("dims", 3, 3);
-        block.lattice.spacing = reader.triple("spacing");
-        block.lattice.origin = reader.triple("origin");
-        double samples = 1;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double n = dims[std::size_t(axis)];
-            if (!(n >= 1 && n <= kMostSamplesPerAxis) || n != std::floor(n)) reader.fail("dims");
-            if (!(block.lattice.spacing[axis] > 0)) reader.fail("spacing");
-            block.lattice.size[axis] = static_cast<int>(n);
-            samples *= n;
-        }
-        if (samples > 1e12) reader.fail("dims");
-    }
+    if (block.mesh)
+        parseCells(block, reader);
+    else
+        parseGrid(block, reader);
     block.times = reader.numbers("times", 0, kMostTimes);
     for (std::size_t t = 1; t < block.times.size(); ++t)
         if (block.times[t] <= block.times[t - 1]) reader.fail("times");
@@ -217,6 +273,46 @@ std::vector<Range> parseRanges(std::string_view text, const std::string& file) {
         ranges.back() = {pair[0].get<double>(), pair[1].get<double>()};
     }
     return ranges;
+}
+
+std::string latticeWords(const Lattice& lattice) {
+    char text[256];
+    std::snprintf(text, sizeof text, "%d %d %d %.17g %.17g %.17g %.17g %.17g %.17g", lattice.size.x, lattice.size.y,
+                  lattice.size.z, lattice.origin.x, lattice.origin.y, lattice.origin.z, lattice.spacing.x,
+                  lattice.spacing.y, lattice.spacing.z);
+    std::string words = text;
+    for (int axis = 0; axis < 3; ++axis) {
+        const AxisMap* map = lattice.axes[axis];
+        words += map == nullptr ? " even" : map->of() == AxisMap::Of::Cells ? " cells" : " points";
+        if (map == nullptr) continue;
+        for (const double plane : map->planes()) {
+            std::snprintf(text, sizeof text, " %.17g", plane);
+            words += text;
+        }
+    }
+    return words;
+}
+
+Lattice parseLatticeWords(std::istream& in) {
+    Lattice even;
+    in >> even.size.x >> even.size.y >> even.size.z;
+    in >> even.origin.x >> even.origin.y >> even.origin.z;
+    in >> even.spacing.x >> even.spacing.y >> even.spacing.z;
+    AxisMaps axes;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::string of;
+        in >> of;
+        if (!in || (of != "even" && of != "cells" && of != "points")) throw Error("bad request");
+        if (of == "even") continue;
+        if (even.size[axis] < 1 || even.size[axis] > int(kMostSamplesPerAxis)) throw Error("bad request");
+        std::vector<double> planes(std::size_t(even.size[axis]) + (of == "cells" ? 1 : 0));
+        for (double& plane : planes) in >> plane;
+        if (!in) throw Error("bad request");
+        axes.of[std::size_t(axis)] = std::make_shared<const AxisMap>(
+            of == "cells" ? AxisMap::Of::Cells : AxisMap::Of::Points, std::move(planes));
+    }
+    even.axes = std::move(axes);
+    return even;
 }
 
 Field parseFrame(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type) {

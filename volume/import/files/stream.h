@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <istream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,24 +23,29 @@
 /// have the layout of the one before it; N files after `--slices` are slices of one volume and count as one. With
 /// `--allow-outside` files may name others outside of their folders. Keys:
 /// "format", "blocks": [{"name", "mesh", "cellData", "dims", "spacing", "origin", "box" (6 numbers, x first), "cells",
-/// "cellSize", "lengthUnit", "timeName", "timeUnit", "notes", "times", "quantities": [{"name", "unit", "values": [a
-/// number or null for each time]}], "arrays": [{"name", "unit", "components", "type", "labels": {"1": "air"}}]}].
-/// "timeName", "notes" and "quantities" are optional.
+/// "cellSize", "boxes", "axes", "events", "lengthUnit", "timeName", "timeUnit", "notes", "times", "quantities":
+/// [{"name", "unit", "values": [a number or null for each time]}], "arrays": [{"name", "unit", "components", "type",
+/// "labels":
+/// {"1": "air"}}]}]. "timeName", "notes" and "quantities" are optional. "axes" of an uneven grid: for each axis null or
+/// {"of": "cells" | "points", "planes": [...]}. "boxes" and "events" of a mesh: for each axis the numbers of AxisEvent,
+/// seven each.
 ///
 /// kind 2, frame: u32 type (ScalarType), u32 mask (0 or 1), i32 nx, ny, nz, then nx*ny*nz samples, x fastest, then, if
 /// mask is 1, as many bytes (1 present, 0 absent). It answers the line
 ///
-///     frame FILE BLOCK ARRAY COMPONENT TIME NX NY NZ OX OY OZ SX SY SZ
+///     frame FILE BLOCK ARRAY COMPONENT TIME NX NY NZ OX OY OZ SX SY SZ AXIS AXIS AXIS
 ///
-/// with the indices of the headers, and the size, origin and spacing of the grid to sample on. ARRAY -1 requests the
+/// with the indices of the headers, and the size, origin and spacing of the grid to sample on. AXIS is "even", or
+/// "cells" or "points" and as many planes as the axis has. ARRAY -1 requests the
 /// cover of the block: ones of uint8, absent outside.
 ///
 /// The line
 ///
-///     ranges FILE BLOCK ARRAY TIME
+///     ranges FILE BLOCK ARRAY TIME BETWEEN
 ///
 /// is answered with kind 1: {"ranges": [[lo, hi], ...]}, of the array's own values at points or cells (without NaN),
-/// one per component, then for a vector that of its magnitude; null instead of a pair if there is no value.
+/// and if BETWEEN is 1 of those that cells give at their corners, one per component, then for a vector that of its
+/// magnitude; null instead of a pair if there is no value.
 ///
 /// kind 3, failure: one line of text instead of a header or frame. The program ends when stdin does.
 namespace tessera::volume {
@@ -67,6 +73,10 @@ std::vector<FileBlock> parseStreamHeader(std::string_view json, const std::strin
 
 /// Ranges of an answer to "ranges". Throws Error for malformed messages.
 std::vector<Range> parseRanges(std::string_view json, const std::string& file);
+
+/// A lattice as the words of a request, and back. Throws Error for words that make no lattice.
+std::string latticeWords(const Lattice& lattice);
+Lattice parseLatticeWords(std::istream& in);
 
 /// Samples of a frame message. Throws Error unless its size and type are those expected.
 Field parseFrame(std::span<const std::byte> bytes, const Lattice& lattice, ScalarType type);
