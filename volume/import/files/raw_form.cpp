@@ -1,5 +1,6 @@
 // Reads the form of a raw file: the JSON sidecar and the text of --raw.
 #include "volume/base/error.h"
+#include "volume/field/axes_json.h"
 #include "volume/field/labels.h"
 #include "volume/import/files/import_limits.h"
 #include "volume/import/files/raw.h"
@@ -216,6 +217,11 @@ RawForm parseSidecar(std::string_view text, const std::string& file) {
             form.provenance = origin->get<std::string>();
         else
             form.lattice.origin = reader.triple("origin", glm::dvec3(0));
+    }
+    if (const json* axes = reader.find("axes")) {
+        const json* origin = reader.find("origin");
+        const bool statesSheet = reader.find("spacing") != nullptr && origin != nullptr && origin->is_array();
+        form.lattice = withStatedAxes(form.lattice, statesSheet, *axes, file, "axes");
     }
     if (reader.find("provenance") != nullptr) form.provenance = reader.text("provenance");
     form.lengthUnit = reader.text("length_unit");

@@ -1,7 +1,9 @@
 #include "volume/import/files/stream.h"
 
 #include "volume/base/error.h"
+#include "volume/field/axes_json.h"
 #include "volume/field/labels.h"
+#include "volume/field/own_axes.h"
 #include "volume/import/files/import_limits.h"
 
 #include <algorithm>
@@ -151,6 +153,11 @@ FileBlock parseBlock(const json& entry, const std::string& file, const std::stri
             samples *= n;
         }
         if (samples > 1e12) reader.fail("dims");
+        if (const auto axes = entry.find("axes"); axes != entry.end()) {
+            block.lattice = withStatedAxes(block.lattice, true, *axes, file, place + ".axes");
+            block.cellData = hasCells(block.lattice.axes);
+            if (block.cellData) block.box = gridBounds(block.lattice);
+        }
     }
     block.times = reader.numbers("times", 0, kMostTimes);
     for (std::size_t t = 1; t < block.times.size(); ++t)

@@ -24,6 +24,7 @@
 /// "format", "blocks": [{"name", "mesh", "cellData", "dims", "spacing", "origin", "box" (6 numbers, x first), "cells",
 /// "cellSize", "lengthUnit", "timeName", "timeUnit", "notes", "times", "quantities": [{"name", "unit", "values": [a
 /// number or null for each time]}], "arrays": [{"name", "unit", "components", "type", "labels": {"1": "air"}}]}].
+/// A grid of uneven axes has "axes" (volume/field/axes_json.h), whose sheet "spacing" and "origin" are of.
 /// "timeName", "notes" and "quantities" are optional.
 ///
 /// kind 2, frame: u32 type (ScalarType), u32 mask (0 or 1), i32 nx, ny, nz, then nx*ny*nz samples, x fastest, then, if
