@@ -139,7 +139,9 @@ void printArchive(const codec::Archive& archive) {
         : info.lattice.kind == volume::LatticeKind::BCC ? "BCC"
                                                         : "CC",
         triple(archive.metadata().source.size).c_str());
-    if (const std::string spacing = spacingText(info); !spacing.empty()) say("  spacing    %s\n", spacing.c_str());
+    volume::DatasetInfo ofSource = info;
+    ofSource.lattice = archive.metadata().source;
+    if (const std::string spacing = spacingText(ofSource); !spacing.empty()) say("  spacing    %s\n", spacing.c_str());
     say("  extent     %s x %s x %s%s%s\n", numberText(extent.x).c_str(), numberText(extent.y).c_str(),
         numberText(extent.z).c_str(), info.lengthUnit.empty() ? "" : " ", info.lengthUnit.c_str());
     say("  times      %s\n", timesText(info).c_str());
