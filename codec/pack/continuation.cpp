@@ -2,6 +2,7 @@
 
 #include "codec/unpack/unpack.h"
 #include "volume/base/number_text.h"
+#include "volume/field/own_axes.h"
 #include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
 #include "volume/resample/resample.h"
@@ -33,23 +34,11 @@ bool sameSheet(const volume::Lattice& a, const volume::Lattice& b) {
     return same;
 }
 
-/// Whether two axes have the same planes, up to a share of the cell at each.
-bool samePlanes(const volume::AxisMap* a, const volume::AxisMap* b) {
-    if (!a || !b) return a == b;
-    const std::vector<double>&of = a->planes(), &other = b->planes();
-    if (a->of() != b->of() || of.size() != other.size()) return false;
-    for (std::size_t i = 0; i < of.size(); ++i) {
-        const double below = i > 0 ? of[i] - of[i - 1] : of[1] - of[0],
-                     above = i + 1 < of.size() ? of[i + 1] - of[i] : below;
-        if (!(std::abs(of[i] - other[i]) <= kSamePlace * std::min(below, above))) return false;
-    }
-    return true;
-}
-
 /// Throws Error unless samples to add lie where those of the archive lie.
 void requireSameGrid(const Metadata& old, const Metadata& added, const std::string& path) {
     for (int axis = 0; axis < 3; ++axis)
-        if (old.source.size == added.source.size && !samePlanes(old.source.axes[axis], added.source.axes[axis]))
+        if (old.source.size == added.source.size &&
+            !volume::samePlanes(old.source.axes[axis], added.source.axes[axis], kSamePlace))
             throw Error(std::string("the samples lie at other planes of ") + "xyz"[axis] + " than those of the archive",
                         path);
     if (!sameSheet(old.source, added.source) || !sameSheet(old.info.lattice, added.info.lattice))

@@ -96,6 +96,24 @@ TEST_F(UnevenFiles, RawComesBackBitForBit) {
     }
 }
 
+TEST_F(UnevenFiles, FilesOfOneDataSetLieAtTheSamePlanes) {
+    const Lattice lattice = test::layeredLattice(Of::Cells);
+    AxisMaps axes = lattice.axes;
+    std::vector<double> planes = axes.of[2]->planes();
+    planes[3] += 1e-6; // the sheet stays
+    axes.of[2] = std::make_shared<const AxisMap>(Of::Cells, planes);
+    exportDataset(layeredDataset(lattice), {}, in("a_0.raw"));
+    exportDataset(layeredDataset(lattice), {}, in("a_1.raw"));
+    exportDataset(layeredDataset(withAxes(lattice, axes)), {}, in("b_1.raw"));
+    EXPECT_EQ(openFiles({in("a_0.raw"), in("a_1.raw")}, {}).info.lattice, lattice);
+    try {
+        openFiles({in("a_0.raw"), in("b_1.raw")}, {});
+        ADD_FAILURE() << "other planes were taken";
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), HasSubstr("does not lie on the grid of"));
+    }
+}
+
 json layeredSidecar() {
     const Lattice lattice = test::layeredLattice(Of::Cells);
     return {{"dims", {lattice.size.x, lattice.size.y, lattice.size.z}},

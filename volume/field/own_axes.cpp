@@ -61,6 +61,18 @@ Box gridBounds(const Lattice& cc) {
     return box;
 }
 
+bool samePlanes(const AxisMap* a, const AxisMap* b, double share) {
+    if (!a || !b) return a == b;
+    const std::vector<double>&of = a->planes(), &other = b->planes();
+    if (a->of() != b->of() || of.size() != other.size()) return false;
+    for (std::size_t i = 0; i < of.size(); ++i) {
+        const double below = i > 0 ? of[i] - of[i - 1] : of[1] - of[0],
+                     above = i + 1 < of.size() ? of[i + 1] - of[i] : below;
+        if (!(std::abs(of[i] - other[i]) <= share * std::min(below, above))) return false;
+    }
+    return true;
+}
+
 std::array<std::vector<double>, 3> samplePlaces(const Lattice& cc) {
     std::array<std::vector<double>, 3> places;
     for (int axis = 0; axis < 3; ++axis) {

@@ -20,6 +20,9 @@ Box gridBounds(const Lattice& cc);
 /// Whether an axis is of cells, so that the box goes on beyond the outermost samples.
 bool hasCells(const AxisMaps& axes);
 
+/// Whether two axes have the same planes, up to a share of the shorter cell at each. Null is an even axis.
+bool samePlanes(const AxisMap* a, const AxisMap* b, double share);
+
 /// Places of the samples along each axis of a CC lattice.
 std::array<std::vector<double>, 3> samplePlaces(const Lattice& cc);
 

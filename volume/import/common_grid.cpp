@@ -1,6 +1,7 @@
 #include "volume/import/common_grid.h"
 
 #include "volume/base/error.h"
+#include "volume/field/own_axes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +21,10 @@ std::string words(glm::ivec3 size) {
 
 bool sameLattice(const Lattice& a, const Lattice& b) {
     if (a.size != b.size) return false;
+    constexpr double kShare = 1e-4; // of a cell
     for (int axis = 0; axis < 3; ++axis) {
-        const double tolerance = 1e-4 * a.spacing[axis];
+        if (!samePlanes(a.axes[axis], b.axes[axis], kShare)) return false;
+        const double tolerance = kShare * a.spacing[axis];
         if (std::abs(a.spacing[axis] - b.spacing[axis]) * std::max(a.size[axis] - 1, 1) > tolerance ||
             std::abs(a.origin[axis] - b.origin[axis]) > tolerance)
             return false;
