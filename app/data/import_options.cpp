@@ -238,7 +238,7 @@ std::string describePreviewJson(const volume::ImportPreview& preview) {
     out["dims"] = triple(info.lattice.size);
     out["spacing"] = triple(info.lattice.spacing);
     out["origin"] = triple(info.lattice.origin);
-    if (!info.lattice.isEven()) out["axes"] = volume::axesJson(info.lattice.axes);
+    if (!info.lattice.isEven()) out["axes"] = json::parse(volume::axesJson(info.lattice.axes));
     out["lengthUnit"] = info.lengthUnit;
     out["times"] = info.times;
     out["timeName"] = info.timeName;

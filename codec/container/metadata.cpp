@@ -134,7 +134,7 @@ std::string toJson(const Metadata& metadata) {
         {"lossless", metadata.lossless},
         {"maxError", metadata.maxError},
         {"options", toJson(metadata.options)}};
-    if (!info.lattice.isEven()) document["data"]["lattice"]["axes"] = volume::axesJson(info.lattice.axes);
+    if (!info.lattice.isEven()) document["data"]["lattice"]["axes"] = json::parse(volume::axesJson(info.lattice.axes));
     if (info.timeName != volume::DatasetInfo().timeName) document["data"]["timeName"] = info.timeName;
     if (!info.notes.empty()) document["data"]["notes"] = info.notes;
     for (const volume::Quantity& quantity : metadata.alternating ? metadata.sourceQuantities : info.quantities)
@@ -189,8 +189,9 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
     if (data.has("notes"))
         for (const Node& note : data["notes"].items(4096)) info.notes.push_back(note.text());
 
-    readAxes(data["lattice"], metadata);
-    if (!isOfSource(metadata)) root["source"].fail("the samples of the data cannot be made of it");
+    readAxes(data["lattice"], metadata.source, info.lattice);
+    if (!isOfSource(info.lattice, metadata.source, metadata.alternating))
+        root["source"].fail("the samples of the data cannot be made of it");
     if (!areOf(info.bounds, metadata.source)) data["bounds"].fail("not the box of the samples");
 
     const Node grid = root["grid"];

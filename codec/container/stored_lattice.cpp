@@ -18,14 +18,12 @@ using volume::LatticeKind;
 constexpr const char* kD4Name = "d4";
 
 /// The lattice that samples of a source are stored on.
-volume::Lattice storedOn(const Metadata& metadata) {
-    const volume::Lattice& source = metadata.source;
-    if (metadata.alternating)
+volume::Lattice storedOn(LatticeKind kind, const volume::Lattice& source, bool alternating) {
+    if (alternating)
         return volume::d4For({volume::LatticeKind4::CC, glm::ivec4(source.size, 2), glm::dvec4(source.spacing, 1),
                               glm::dvec4(source.origin, 0), source.axes})
             .grid(0);
-    return metadata.info.lattice.kind == LatticeKind::BCC && source.kind == LatticeKind::CC ? volume::bccFor(source)
-                                                                                            : source;
+    return kind == LatticeKind::BCC && source.kind == LatticeKind::CC ? volume::bccFor(source) : source;
 }
 
 } // namespace
@@ -70,21 +68,21 @@ volume::Lattice readLattice(const Node& node, bool* alternating) {
     return lattice;
 }
 
-void readAxes(const Node& lattice, Metadata& metadata) {
+void readAxes(const Node& lattice, volume::Lattice& source, volume::Lattice& stored) {
     if (!lattice.has("axes")) return;
     const Node axes = lattice["axes"];
-    volume::Lattice& source = metadata.source;
+    const std::string text = axes.value().dump(-1, ' ', false, json::error_handler_t::replace);
     // A BCC source does not tell how many samples the grid had that its axes are of.
     const glm::ivec3 size = source.kind == LatticeKind::CC ? source.size : glm::ivec3(0);
-    source.axes = volume::axesFromJson(axes.value(), size, axes.file(), axes.place());
+    source.axes = volume::axesFromJson(text, size, axes.file(), axes.place());
     volume::requireOfSheet(source, axes.file(), axes.place());
-    metadata.info.lattice.axes = source.axes;
+    stored.axes = source.axes;
 }
 
 /// Whether stored samples can be those of a source: on its own grid, or resampled from it.
-bool isOfSource(const Metadata& metadata) {
-    if (metadata.alternating && metadata.source.kind != LatticeKind::CC) return false;
-    const volume::Lattice &stored = metadata.info.lattice, expected = storedOn(metadata);
+bool isOfSource(const volume::Lattice& stored, const volume::Lattice& source, bool alternating) {
+    if (alternating && source.kind != LatticeKind::CC) return false;
+    const volume::Lattice expected = storedOn(stored.kind, source, alternating);
     if (stored.kind != expected.kind || stored.size != expected.size || !(stored.axes == expected.axes)) return false;
     const glm::dvec3 last(stored.size - 1), slack = expected.spacing * 1e-3 + 1e-9 * glm::abs(expected.origin);
     const glm::dvec3 first = glm::abs(stored.origin - expected.origin),

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "codec/container/metadata.h"
 #include "codec/container/metadata_node.h"
+#include "volume/field/lattice.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -18,10 +18,10 @@ volume::Lattice readLattice(const Node& node, bool* alternating = nullptr);
 
 /// Reads the axes that the lattice of the data and the grid of its source share, into both. `lattice`: of the data.
 /// Throws Error where they are not of the source.
-void readAxes(const Node& lattice, Metadata& metadata);
+void readAxes(const Node& lattice, volume::Lattice& source, volume::Lattice& stored);
 
 /// Whether stored samples can be those of the source: on its own grid, or resampled from it.
-bool isOfSource(const Metadata& metadata);
+bool isOfSource(const volume::Lattice& stored, const volume::Lattice& source, bool alternating);
 /// Whether bounds can be those of samples on a lattice: they begin and end within a cell of the outermost ones.
 bool areOf(const volume::Box& bounds, const volume::Lattice& lattice);
 

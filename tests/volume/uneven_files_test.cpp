@@ -120,7 +120,7 @@ json layeredSidecar() {
             {"dtype", "u8"},
             {"spacing", {lattice.spacing.x, lattice.spacing.y, lattice.spacing.z}},
             {"origin", {lattice.origin.x, lattice.origin.y, lattice.origin.z}},
-            {"axes", axesJson(lattice.axes)}};
+            {"axes", json::parse(axesJson(lattice.axes))}};
 }
 
 std::string refusedSidecar(const json& sidecar) {
@@ -138,8 +138,8 @@ TEST_F(UnevenFiles, SidecarsMayLeaveOutTheSheet) {
     EXPECT_EQ(parseSidecar(sidecar.dump(), "a.json").lattice, test::layeredLattice(Of::Cells));
     sidecar.erase("origin");
     sidecar.erase("spacing");
-    sidecar["axes"][1] =
-        axesJson({{std::make_shared<const AxisMap>(Of::Points, std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 9})}})[0];
+    sidecar["axes"][1] = json::parse(
+        axesJson({{std::make_shared<const AxisMap>(Of::Points, std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 9})}}))[0];
     const Lattice read = parseSidecar(sidecar.dump(), "a.json").lattice;
     EXPECT_EQ(read.axes[2]->planes(), test::layeredLattice(Of::Cells).axes[2]->planes());
     EXPECT_EQ(read.spacing.z, read.axes[2]->spacing());
@@ -187,7 +187,7 @@ TEST_F(UnevenFiles, HeadersOfStreamsStateAxes) {
     EXPECT_EQ(read.lattice, test::layeredLattice(Of::Cells));
     EXPECT_TRUE(read.cellData);
     EXPECT_EQ(read.box.hi.z, read.lattice.axes[2]->hi());
-    block["axes"] = axesJson({{nullptr, nullptr, test::layeredLattice(Of::Points).axes.of[2]}});
+    block["axes"] = json::parse(axesJson({{nullptr, nullptr, test::layeredLattice(Of::Points).axes.of[2]}}));
     EXPECT_THROW(parse(), Error); // 21 points are not 20 samples
     block["axes"] = json::array();
     EXPECT_THROW(parse(), Error);

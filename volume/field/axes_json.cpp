@@ -46,7 +46,7 @@ AxisMap axisFromJson(const json& value, int samples, const std::string& file, co
 
 } // namespace
 
-json axesJson(const AxisMaps& axes) {
+std::string axesJson(const AxisMaps& axes) {
     json out = json::array();
     for (int axis = 0; axis < 3; ++axis) {
         const AxisMap* map = axes[axis];
@@ -54,10 +54,11 @@ json axesJson(const AxisMaps& axes) {
             map ? json{{"of", map->of() == AxisMap::Of::Cells ? kOfCells : kOfPoints}, {"planes", map->planes()}}
                 : json());
     }
-    return out;
+    return out.dump();
 }
 
-AxisMaps axesFromJson(const json& value, glm::ivec3 size, const std::string& file, const std::string& place) {
+AxisMaps axesFromJson(std::string_view text, glm::ivec3 size, const std::string& file, const std::string& place) {
+    const json value = json::parse(text, nullptr, false);
     if (!value.is_array() || value.size() != 3) throw Error("must be a list of three, of x, y and z", file, place);
     AxisMaps axes;
     for (int axis = 0; axis < 3; ++axis) {
@@ -94,7 +95,7 @@ void requireOfSheet(const Lattice& lattice, const std::string& file, const std::
     }
 }
 
-Lattice withStatedAxes(const Lattice& stated, bool statesSheet, const json& axes, const std::string& file,
+Lattice withStatedAxes(const Lattice& stated, bool statesSheet, std::string_view axes, const std::string& file,
                        const std::string& place) {
     const Lattice out = withAxes(stated, axesFromJson(axes, stated.size, file, place));
     Lattice compared = statesSheet ? stated : out;

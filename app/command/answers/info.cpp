@@ -120,7 +120,7 @@ Json archiveJson(const codec::Archive& archive) {
         {"exactness", codec::exactnessText(archive.metadata())},
         {"provenance", info.provenance},
         {"notes", info.notes}};
-    if (!info.lattice.isEven()) document["axes"] = volume::axesJson(info.lattice.axes);
+    if (!info.lattice.isEven()) document["axes"] = Json::parse(volume::axesJson(info.lattice.axes));
     return document;
 }
 

@@ -169,6 +169,15 @@ RawForm::Component readComponent(const json& entry, const std::string& file, con
     return component;
 }
 
+/// Sets the axes that a sidecar states, and their sheet.
+void takeAxes(const Reader& reader, Lattice& lattice) {
+    const json *axes = reader.find("axes"), *origin = reader.find("origin");
+    if (axes == nullptr) return;
+    const bool statesSheet = reader.find("spacing") != nullptr && origin != nullptr && origin->is_array();
+    const std::string text = axes->dump(-1, ' ', false, json::error_handler_t::replace);
+    lattice = withStatedAxes(lattice, statesSheet, text, reader.file, "axes");
+}
+
 Quantity readQuantity(const json& entry, std::size_t frames, const std::string& file, const std::string& path) {
     if (!entry.is_object()) throw Error("must be an object", file, path);
     const Reader reader{entry, file, path + "."};
@@ -218,11 +227,7 @@ RawForm parseSidecar(std::string_view text, const std::string& file) {
         else
             form.lattice.origin = reader.triple("origin", glm::dvec3(0));
     }
-    if (const json* axes = reader.find("axes")) {
-        const json* origin = reader.find("origin");
-        const bool statesSheet = reader.find("spacing") != nullptr && origin != nullptr && origin->is_array();
-        form.lattice = withStatedAxes(form.lattice, statesSheet, *axes, file, "axes");
-    }
+    takeAxes(reader, form.lattice);
     if (reader.find("provenance") != nullptr) form.provenance = reader.text("provenance");
     form.lengthUnit = reader.text("length_unit");
     form.timeName = reader.text("time_name");

@@ -154,7 +154,8 @@ FileBlock parseBlock(const json& entry, const std::string& file, const std::stri
         }
         if (samples > 1e12) reader.fail("dims");
         if (const auto axes = entry.find("axes"); axes != entry.end()) {
-            block.lattice = withStatedAxes(block.lattice, true, *axes, file, place + ".axes");
+            block.lattice = withStatedAxes(
+                block.lattice, true, axes->dump(-1, ' ', false, json::error_handler_t::replace), file, place + ".axes");
             block.cellData = hasCells(block.lattice.axes);
             if (block.cellData) block.box = gridBounds(block.lattice);
         }
