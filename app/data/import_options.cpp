@@ -1,11 +1,13 @@
 #include "app/data/import_options.h"
 
 #include "app/data/format.h"
+#include "app/data/spacing_text.h"
 #include "app/described/describe_cli.h"
 #include "codec/container/json_text.h"
 #include "codec/remote/consent.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
+#include "volume/field/axes_json.h"
 #include "volume/import/find_parts.h"
 
 #include <algorithm>
@@ -211,8 +213,11 @@ std::string describePreview(const volume::ImportPreview& preview) {
     std::string out = info.name + " (" + preview.format + ")\n";
     out += "  samples    " + std::to_string(lattice.size.x) + " x " + std::to_string(lattice.size.y) + " x " +
            std::to_string(lattice.size.z) + "\n";
-    out += "  spacing    " + numberText(lattice.spacing.x) + " x " + numberText(lattice.spacing.y) + " x " +
-           numberText(lattice.spacing.z) + unit + "\n";
+    out += "  spacing    " +
+           (lattice.isEven() ? numberText(lattice.spacing.x) + " x " + numberText(lattice.spacing.y) + " x " +
+                                   numberText(lattice.spacing.z) + unit
+                             : spacingText(info)) +
+           "\n";
     out += "  extent     " + numberText(extent.x) + " x " + numberText(extent.y) + " x " + numberText(extent.z) + unit +
            "\n";
     out += "  times      " + timesText(info);
@@ -244,6 +249,7 @@ std::string describePreviewJson(const volume::ImportPreview& preview) {
     out["dims"] = triple(info.lattice.size);
     out["spacing"] = triple(info.lattice.spacing);
     out["origin"] = triple(info.lattice.origin);
+    if (!info.lattice.isEven()) out["axes"] = json::parse(volume::axesJson(info.lattice.axes));
     out["lengthUnit"] = info.lengthUnit;
     out["times"] = info.times;
     out["timeName"] = info.timeName;

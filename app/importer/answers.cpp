@@ -1,6 +1,7 @@
 #include "app/importer/describe_source.h"
 #include "app/importer/node_values.h"
 #include "app/importer/present.h"
+#include "volume/field/axes_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -65,18 +66,6 @@ std::string rangesJson(vtkDataSet* data, vtkDataArray* stored, const ArrayRef& a
 
 namespace {
 
-nlohmann::json axesJson(const volume::AxisMaps& axes) {
-    nlohmann::json out = nlohmann::json::array();
-    for (int axis = 0; axis < 3; ++axis) {
-        const volume::AxisMap* map = axes[axis];
-        out.push_back(map == nullptr
-                          ? nlohmann::json()
-                          : nlohmann::json{{"of", map->of() == volume::AxisMap::Of::Cells ? "cells" : "points"},
-                                           {"planes", map->planes()}});
-    }
-    return out;
-}
-
 nlohmann::json eventsJson(const std::array<volume::AxisEvents, 3>& axes) {
     nlohmann::json out = nlohmann::json::array();
     for (const volume::AxisEvents& events : axes) {
@@ -106,7 +95,7 @@ std::string headerJson(const std::vector<BlockRef>& blocks) {
         entry["dims"] = triple(block.lattice.size);
         entry["spacing"] = triple(block.lattice.spacing);
         entry["origin"] = triple(block.lattice.origin);
-        if (!block.lattice.isEven()) entry["axes"] = axesJson(block.lattice.axes);
+        if (!block.lattice.isEven()) entry["axes"] = json::parse(volume::axesJson(block.lattice.axes));
         if (std::ranges::any_of(block.events, [](const auto& events) { return !events.empty(); }))
             entry["events"] = eventsJson(block.events);
         entry["box"] = {block.box.lo.x, block.box.lo.y, block.box.lo.z, block.box.hi.x, block.box.hi.y, block.box.hi.z};

@@ -158,6 +158,7 @@ ArchiveWriter::ArchiveWriter(const std::string& path, const Metadata& metadata, 
     impl_->keepsFrames = keepsFrames;
     // A volume of one brick is read as quickly as its statistics would be, and they would be a large part of its size.
     if (metadata.grid.count() == glm::ivec3(1)) impl_->commits.header.features &= ~kBrickStatistics;
+    if (!metadata.source.isEven()) impl_->commits.header.features |= kUnevenAxes;
 }
 
 ArchiveWriter::ArchiveWriter(const Archive& archive, const Metadata& metadata, bool keepsFrames) {

@@ -5,6 +5,7 @@
 #include "volume/base/error.h"
 #include "volume/base/number_text.h"
 #include "volume/base/utf8.h"
+#include "volume/field/own_axes.h"
 #include "volume/field/slices.h"
 
 #include <algorithm>
@@ -68,19 +69,39 @@ std::string textOr(const char* text, const char* otherwise, const std::string& p
     return given;
 }
 
-volume::Lattice latticeOf(const tessera_grid& grid, const std::string& path) {
+/// The planes of an axis of `size` samples; null for an even one.
+std::shared_ptr<const volume::AxisMap> axisOf(const tessera_axes* axes, int axis, int size, const std::string& path) {
+    const double* planes = axes != nullptr ? axes->planes[axis] : nullptr;
+    if (planes == nullptr) return nullptr;
+    const std::string place = std::string("axes, ") + "xyz"[axis];
+    const int of = axes->of[axis];
+    if (of != TESSERA_CELLS && of != TESSERA_POINTS)
+        throw Error("the planes are neither TESSERA_CELLS nor TESSERA_POINTS", path, place);
+    try {
+        return std::make_shared<const volume::AxisMap>(
+            of == TESSERA_CELLS ? volume::AxisMap::Of::Cells : volume::AxisMap::Of::Points,
+            std::vector<double>(planes, planes + size + (of == TESSERA_CELLS ? 1 : 0)));
+    } catch (const Error& error) {
+        throw Error(error.reason(), path, place);
+    }
+}
+
+volume::Lattice latticeOf(const tessera_grid& grid, const tessera_axes* axes, const std::string& path) {
     volume::Lattice lattice;
+    volume::AxisMaps maps;
     for (int axis = 0; axis < 3; ++axis) {
         constexpr int kMost = 1 << 20;
         if (grid.size[axis] < 1 || grid.size[axis] > kMost)
             throw Error("a size is " + std::to_string(grid.size[axis]) + " samples", path, "grid");
+        lattice.size[axis] = grid.size[axis];
+        maps.of[std::size_t(axis)] = axisOf(axes, axis, grid.size[axis], path);
+        if (maps[axis]) continue;
         if (!(grid.spacing[axis] > 0) || !std::isfinite(grid.spacing[axis]) || !std::isfinite(grid.origin[axis]))
             throw Error("the spacing must be greater than 0, and all lengths finite", path, "grid");
-        lattice.size[axis] = grid.size[axis];
         lattice.spacing[axis] = grid.spacing[axis];
         lattice.origin[axis] = grid.origin[axis];
     }
-    return lattice;
+    return volume::withAxes(lattice, std::move(maps));
 }
 
 void addParameter(tessera_writer& writer, const tessera_parameter& given) {
@@ -121,7 +142,8 @@ void continueArchive(tessera_writer& writer) {
     PackOptions given = writer.options;
     given.memoryMb = 0;
     if (metadata.options != given) throw Error("was packed with another lattice or error bound", writer.path);
-    if (metadata.source.size != writer.info.lattice.size) throw Error("has another grid", writer.path);
+    if (metadata.source.size != writer.info.lattice.size || !(metadata.source.axes == writer.info.lattice.axes))
+        throw Error("has another grid", writer.path);
     const auto same = [](const volume::Parameter& a, const volume::Parameter& b) {
         return a.name == b.name && a.unit == b.unit && a.components == b.components && a.type == b.type;
     };
@@ -132,16 +154,16 @@ void continueArchive(tessera_writer& writer) {
     writer.lastTime = metadata.info.times.back();
 }
 
-std::unique_ptr<tessera_writer> opened(const char* path, const tessera_grid* grid, const tessera_parameter* parameters,
-                                       int count) {
+std::unique_ptr<tessera_writer> opened(const char* path, const tessera_grid* grid, const tessera_axes* axes,
+                                       const tessera_parameter* parameters, int count) {
     if (path == nullptr || *path == '\0') throw Error("no path is given");
     if (grid == nullptr) throw Error("no grid is given", path);
     if (parameters == nullptr || count < 1) throw Error("no parameter is given", path);
     auto writer = std::make_unique<tessera_writer>();
     writer->path = path;
     volume::DatasetInfo& info = writer->info;
-    info.lattice = latticeOf(*grid, path);
-    info.bounds = {info.lattice.origin, info.lattice.position(info.lattice.size - 1)};
+    info.lattice = latticeOf(*grid, axes, path);
+    info.bounds = volume::gridBounds(info.lattice);
     info.lengthUnit = textOr(grid->length_unit, "", path);
     info.timeUnit = textOr(grid->time_unit, "s", path);
     info.name = textOr(grid->name, "", path);
@@ -210,8 +232,13 @@ void appendTime(tessera_writer* writer, double time, const void* const* arrays) 
 
 tessera_writer* tessera_writer_open(const char* path, const tessera_grid* grid, const tessera_parameter* parameters,
                                     int parameter_count) {
+    return tessera_writer_open_axes(path, grid, nullptr, parameters, parameter_count);
+}
+
+tessera_writer* tessera_writer_open_axes(const char* path, const tessera_grid* grid, const tessera_axes* axes,
+                                         const tessera_parameter* parameters, int parameter_count) {
     std::unique_ptr<tessera_writer> writer;
-    tessera::codec::guarded([&] { writer = tessera::codec::opened(path, grid, parameters, parameter_count); });
+    tessera::codec::guarded([&] { writer = tessera::codec::opened(path, grid, axes, parameters, parameter_count); });
     return writer.release();
 }
 

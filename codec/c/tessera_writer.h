@@ -55,6 +55,21 @@ typedef struct {
 TESSERA_API tessera_writer* tessera_writer_open(const char* path, const tessera_grid* grid,
                                                 const tessera_parameter* parameters, int parameter_count);
 
+/* What planes of an axis are: borders of cells, whose samples lie in the middle of them, or places of samples. */
+enum { TESSERA_CELLS = 0, TESSERA_POINTS = 1 };
+
+/* Axes of uneven spacing, along x, y and z. */
+typedef struct {
+    const double* planes[3]; /* rising, in length_unit: size + 1 borders of cells, or size points; NULL: an even axis,
+                                of the spacing and the origin of the grid, which are not read of other axes */
+    int of[3];               /* TESSERA_CELLS or TESSERA_POINTS */
+} tessera_axes;
+
+/* The same on a grid of uneven spacing. The planes are copied. `axes` may be NULL. */
+TESSERA_API tessera_writer* tessera_writer_open_axes(const char* path, const tessera_grid* grid,
+                                                     const tessera_axes* axes, const tessera_parameter* parameters,
+                                                     int parameter_count);
+
 /* Appends one time, greater than all before. arrays[p] holds parameter p at all samples, x fastest, then y, then z, the
  * components of a vector next to each other. Samples that are not finite are stored as absent. Returns 0 once the time
  * is on disk, 2 if the data are wrong, 3 if the machine failed (disk full, not enough memory). */

@@ -50,10 +50,12 @@ inline constexpr std::uint32_t kPartedFrames = 2048;
 inline constexpr std::uint32_t kSteppedIntegers = 4096;
 /// Feature: the metadata name blocks of numbers of regions. Only set once there is one.
 inline constexpr std::uint32_t kRegionNumbers = 8192;
+/// Feature: the lattice has axes of uneven spacing. Only set where it has.
+inline constexpr std::uint32_t kUnevenAxes = 16384;
 /// Features that are only set once they are used.
 inline constexpr std::uint32_t kSetWhenUsed = kSteppedBricks | kSubsamples | kPredictedFrames | kFittedModels |
                                               kMixedBricks | kCorrections | kPartedFrames | kSteppedIntegers |
-                                              kRegionNumbers;
+                                              kRegionNumbers | kUnevenAxes;
 inline constexpr std::uint32_t kUsualFeatures = kBrickNotes | kCompact | kBandContexts | kBrickStatistics,
                                kKnownFeatures = kUsualFeatures | kSetWhenUsed;
 

@@ -4,14 +4,12 @@
 #include "codec/container/container.h"
 #include "codec/container/json_text.h"
 #include "codec/container/options_json.h"
+#include "codec/container/stored_lattice.h"
 #include "volume/base/error.h"
-#include "volume/base/printable.h"
-#include "volume/field/lattice4.h"
+#include "volume/field/axes_json.h"
 
 #include <bit>
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/vector_relational.hpp>
 #include <nlohmann/json.hpp>
 
 namespace tessera::codec {
@@ -19,20 +17,6 @@ namespace tessera::codec {
 namespace {
 
 using nlohmann::json;
-using volume::LatticeKind;
-
-template <class Vector> json vectorJson(const Vector& v) {
-    return {v.x, v.y, v.z};
-}
-
-constexpr const char* kD4Name = "d4";
-
-json latticeJson(const volume::Lattice& lattice, bool alternating = false) {
-    return {{"kind", alternating ? kD4Name : volume::kLatticeNames[std::size_t(lattice.kind)]},
-            {"size", vectorJson(lattice.size)},
-            {"spacing", vectorJson(lattice.spacing)},
-            {"origin", vectorJson(lattice.origin)}};
-}
 
 json parameterJson(const volume::Parameter& parameter) {
     json labels = json::array(), ranges = json::array();
@@ -59,87 +43,6 @@ json quantityJson(const volume::Quantity& quantity) {
     json values = json::array();
     for (const double value : quantity.values) values.push_back(std::isfinite(value) ? json(value) : json());
     return {{"name", quantity.name}, {"unit", quantity.unit}, {"values", std::move(values)}};
-}
-
-/// A JSON node with typed access, and its path for messages.
-class Node {
-public:
-    Node(const json& value, std::string path, const std::string& file)
-        : value_(value), path_(std::move(path)), file_(file) {}
-
-    [[noreturn]] void fail(const std::string& reason) const { throw Error(reason, file_, "metadata " + path_); }
-    Node operator[](const char* key) const {
-        if (!value_.is_object() || !value_.contains(key)) fail(std::string("the key '") + key + "' is missing");
-        return {value_.at(key), path_ + "/" + key, file_};
-    }
-    bool has(const char* key) const { return value_.is_object() && value_.contains(key); }
-    bool isNull() const { return value_.is_null(); }
-    std::vector<Node> items(std::size_t most) const {
-        if (!value_.is_array() || value_.size() > most) fail("not a list of at most " + std::to_string(most));
-        std::vector<Node> all;
-        for (std::size_t i = 0; i < value_.size(); ++i)
-            all.emplace_back(value_[i], path_ + "/" + std::to_string(i), file_);
-        return all;
-    }
-    std::string text() const {
-        if (!value_.is_string()) fail("not a text");
-        return printable(value_.get<std::string>());
-    }
-    double number() const {
-        if (!value_.is_number()) fail("not a number");
-        return value_.get<double>();
-    }
-    int integer(int lo, int hi) const {
-        if (!value_.is_number_integer()) fail("not an integer");
-        const auto value = value_.get<std::int64_t>();
-        if (value < lo || value > hi) fail("not between " + std::to_string(lo) + " and " + std::to_string(hi));
-        return static_cast<int>(value);
-    }
-    std::uint64_t count() const {
-        if (!value_.is_number_unsigned()) fail("not a whole number");
-        return value_.get<std::uint64_t>();
-    }
-    bool flag() const {
-        if (!value_.is_boolean()) fail("not true or false");
-        return value_.get<bool>();
-    }
-    glm::dvec3 vector() const {
-        const auto parts = items(3);
-        if (parts.size() != 3) fail("not three numbers");
-        return {parts[0].number(), parts[1].number(), parts[2].number()};
-    }
-
-private:
-    const json& value_;
-    std::string path_;
-    const std::string& file_;
-};
-
-/// `alternating`: set if the frames form a D4* lattice; null: not allowed here.
-volume::Lattice readLattice(const Node& node, bool* alternating = nullptr) {
-    volume::Lattice lattice;
-    const std::string kind = node["kind"].text();
-    if (kind == volume::kLatticeNames[0])
-        lattice.kind = LatticeKind::CC;
-    else if (kind == volume::kLatticeNames[1])
-        lattice.kind = LatticeKind::BCC;
-    else if (alternating != nullptr && kind == kD4Name)
-        *alternating = true;
-    else
-        node["kind"].fail("unknown lattice '" + kind + "'");
-    const auto size = node["size"].items(3);
-    if (size.size() != 3) node["size"].fail("not three numbers");
-    constexpr int kLargest = 1 << 24;
-    lattice.size = {size[0].integer(1, kLargest), size[1].integer(1, kLargest), size[2].integer(1, kLargest)};
-    lattice.spacing = node["spacing"].vector();
-    lattice.origin = node["origin"].vector();
-    constexpr double kMost = 1e100; // so that sums and squares stay finite
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!(lattice.spacing[axis] > 1 / kMost && lattice.spacing[axis] < kMost))
-            node["spacing"].fail("not a length above 0");
-        if (!(std::abs(lattice.origin[axis]) < kMost)) node["origin"].fail("not a place");
-    }
-    return lattice;
 }
 
 std::vector<double> readTimes(const Node& node) {
@@ -231,6 +134,7 @@ std::string toJson(const Metadata& metadata) {
         {"lossless", metadata.lossless},
         {"maxError", metadata.maxError},
         {"options", toJson(metadata.options)}};
+    if (!info.lattice.isEven()) document["data"]["lattice"]["axes"] = json::parse(volume::axesJson(info.lattice.axes));
     if (info.timeName != volume::DatasetInfo().timeName) document["data"]["timeName"] = info.timeName;
     if (!info.notes.empty()) document["data"]["notes"] = info.notes;
     for (const volume::Quantity& quantity : metadata.alternating ? metadata.sourceQuantities : info.quantities)
@@ -244,40 +148,6 @@ std::string toJson(const Metadata& metadata) {
     putRanges("corrections", metadata.corrections);
     putRanges("numbers", metadata.numbers);
     return jsonText(document);
-}
-
-/// The lattice that samples of a source are stored on.
-volume::Lattice storedOn(const Metadata& metadata) {
-    const volume::Lattice& source = metadata.source;
-    if (metadata.alternating)
-        return volume::d4For({volume::LatticeKind4::CC, glm::ivec4(source.size, 2), glm::dvec4(source.spacing, 1),
-                              glm::dvec4(source.origin, 0)})
-            .grid(0);
-    return metadata.info.lattice.kind == LatticeKind::BCC && source.kind == LatticeKind::CC ? volume::bccFor(source)
-                                                                                            : source;
-}
-
-/// Whether stored samples can be those of a source: on its own grid, or resampled from it.
-bool isOf(const Metadata& metadata) {
-    if (metadata.alternating && metadata.source.kind != LatticeKind::CC) return false;
-    const volume::Lattice &stored = metadata.info.lattice, expected = storedOn(metadata);
-    if (stored.kind != expected.kind || stored.size != expected.size) return false;
-    const glm::dvec3 last(stored.size - 1), slack = expected.spacing * 1e-3 + 1e-9 * glm::abs(expected.origin);
-    const glm::dvec3 first = glm::abs(stored.origin - expected.origin),
-                     end = glm::abs(stored.sheetOfCells(last) - expected.sheetOfCells(last));
-    return glm::all(glm::lessThanEqual(first, slack)) && glm::all(glm::lessThanEqual(end, slack));
-}
-
-/// Whether bounds can be those of samples on a lattice: they begin and end within a cell of the outermost ones.
-bool areOf(const volume::Box& bounds, const volume::Lattice& lattice) {
-    const glm::dvec3 lo = lattice.sheetPosition({0, 0, 0}), hi = lattice.sheetPosition(lattice.size - 1);
-    for (int axis = 0; axis < 3; ++axis) {
-        const double slack = lattice.spacing[axis] + 1e-9 * (std::abs(lo[axis]) + std::abs(hi[axis]));
-        const bool near =
-            std::abs(bounds.lo[axis] - lo[axis]) <= slack && std::abs(bounds.hi[axis] - hi[axis]) <= slack;
-        if (!near || !(bounds.lo[axis] <= bounds.hi[axis])) return false; // nor if one is not finite
-    }
-    return true;
 }
 
 Metadata metadataFromJson(std::string_view text, const std::string& file) {
@@ -319,7 +189,9 @@ Metadata metadataFromJson(std::string_view text, const std::string& file) {
     if (data.has("notes"))
         for (const Node& note : data["notes"].items(4096)) info.notes.push_back(note.text());
 
-    if (!isOf(metadata)) root["source"].fail("the samples of the data cannot be made of it");
+    readAxes(data["lattice"], metadata.source, info.lattice);
+    if (!isOfSource(info.lattice, metadata.source, metadata.alternating))
+        root["source"].fail("the samples of the data cannot be made of it");
     if (!areOf(info.bounds, metadata.source)) data["bounds"].fail("not the box of the samples");
 
     const Node grid = root["grid"];
@@ -364,7 +236,9 @@ Bytes serialise(const Metadata& metadata, std::uint32_t features) {
     return out;
 }
 
-Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t features, const std::string& file) {
+namespace {
+
+Metadata parseText(std::span<const std::byte> block, std::uint32_t features, const std::string& file) {
     const auto textOf = [](std::span<const std::byte> bytes) {
         return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     };
@@ -384,6 +258,15 @@ Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t features,
     Bytes text(length);
     if (decompress(body, text) != DecodeStatus::Ok) throw Error("the metadata cannot be decoded", file, "metadata");
     return metadataFromJson(textOf(text), file);
+}
+
+} // namespace
+
+Metadata parseMetadata(std::span<const std::byte> block, std::uint32_t features, const std::string& file) {
+    Metadata metadata = parseText(block, features, file);
+    if (!metadata.source.isEven() && (features & kUnevenAxes) == 0)
+        throw Error("there are uneven axes that the archive does not declare", file, "metadata /data/lattice/axes");
+    return metadata;
 }
 
 } // namespace tessera::codec

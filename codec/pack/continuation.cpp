@@ -2,6 +2,7 @@
 
 #include "codec/unpack/unpack.h"
 #include "volume/base/number_text.h"
+#include "volume/field/own_axes.h"
 #include "volume/field/part_masks.h"
 #include "volume/field/quantities.h"
 #include "volume/resample/resample.h"
@@ -22,14 +23,28 @@ std::string sizeText(const volume::Lattice& lattice) {
            std::to_string(lattice.size.z);
 }
 
-/// Whether two lattices have the same samples in space, up to rounding in files.
-bool sameLattice(const volume::Lattice& a, const volume::Lattice& b) {
-    constexpr double kRounding = 1e-5; // of a cell
+constexpr double kSamePlace = 1e-5; ///< in files, of a cell
+
+/// Whether two lattices have the same samples on their sheets, up to rounding in files.
+bool sameSheet(const volume::Lattice& a, const volume::Lattice& b) {
     bool same = a.kind == b.kind && a.size == b.size;
     for (int axis = 0; axis < 3; ++axis)
-        same = same && std::abs(a.spacing[axis] - b.spacing[axis]) * a.size[axis] <= kRounding * a.spacing[axis] &&
-               std::abs(a.origin[axis] - b.origin[axis]) <= kRounding * a.spacing[axis];
+        same = same && std::abs(a.spacing[axis] - b.spacing[axis]) * a.size[axis] <= kSamePlace * a.spacing[axis] &&
+               std::abs(a.origin[axis] - b.origin[axis]) <= kSamePlace * a.spacing[axis];
     return same;
+}
+
+/// Throws Error unless samples to add lie where those of the archive lie.
+void requireSameGrid(const Metadata& old, const Metadata& added, const std::string& path) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (old.source.size == added.source.size &&
+            !volume::samePlanes(old.source.axes[axis], added.source.axes[axis], kSamePlace))
+            throw Error(std::string("the samples lie at other planes of ") + "xyz"[axis] + " than those of the archive",
+                        path);
+    if (!sameSheet(old.source, added.source) || !sameSheet(old.info.lattice, added.info.lattice))
+        throw Error("the samples lie on another grid (" + sizeText(added.source) + ") than those of the archive (" +
+                        sizeText(old.source) + ")",
+                    path);
 }
 
 const Parameter* find(const DatasetInfo& info, const std::string& name) {
@@ -159,10 +174,7 @@ Continuation continuationOf(const Archive& archive, Metadata& metadata) {
     const std::string& path = archive.path();
     const Metadata& old = archive.metadata();
     const DatasetInfo added = metadata.info;
-    if (!sameLattice(old.source, metadata.source) || !sameLattice(old.info.lattice, added.lattice))
-        throw Error("the samples lie on another grid (" + sizeText(metadata.source) + ") than those of the archive (" +
-                        sizeText(old.source) + ")",
-                    path);
+    requireSameGrid(old, metadata, path);
     if (old.grid.brickSize != metadata.grid.brickSize || old.grid.levels != metadata.grid.levels ||
         old.grid.phase != metadata.grid.phase)
         throw Error("the bricks of the archive do not agree with its options", path);

@@ -55,7 +55,8 @@ std::string shapeBefore(const Archive* grown) {
 
 std::string addNumbers(ArchiveWriter& writer, const volume::Dataset& source, const PackedBefore& before,
                        const Archive* grown, const MemoryPlan& memory, Metadata& metadata, const Progress& progress) {
-    if (!metadata.options.regionNumbers) return {};
+    // What the format keeps of a region counts every sample alike; cells of uneven axes differ in volume.
+    if (!metadata.options.regionNumbers || !metadata.source.isEven()) return {};
     const volume::Dataset& from = before.whole ? *before.whole : source;
     volume::ComputedNumbers numbers;
     if (before.numbers)

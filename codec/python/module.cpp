@@ -1,6 +1,7 @@
 #include "codec/container/options_json.h"
 #include "codec/pack/pack.h"
 #include "codec/unpack/grid_box.h"
+#include "volume/field/own_axes.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -69,12 +70,51 @@ py::dict dictOf(const volume::Parameter& parameter) {
     return out;
 }
 
+constexpr const char *kCells = "cells", *kPoints = "points";
+
+/// Per axis None (even), or ("cells" | "points", planes).
+py::list axesOf(const volume::AxisMaps& axes) {
+    py::list out;
+    for (int axis = 0; axis < 3; ++axis)
+        if (const volume::AxisMap* map = axes[axis])
+            out.append(py::make_tuple(map->of() == volume::AxisMap::Of::Cells ? kCells : kPoints, map->planes()));
+        else
+            out.append(py::none());
+    return out;
+}
+
+/// The same read; of `size` samples.
+volume::AxisMaps axesFrom(const py::list& axes, glm::ivec3 size) {
+    volume::AxisMaps out;
+    for (int axis = 0; axis < 3; ++axis) {
+        const py::object given = axes[std::size_t(axis)];
+        if (given.is_none()) continue;
+        auto [of, planes] = given.cast<std::pair<std::string, std::vector<double>>>();
+        const std::string name(1, "xyz"[axis]);
+        const bool cells = of == kCells;
+        if (!cells && of != kPoints) throw Error("axes: " + name + ": planes are of \"cells\" or of \"points\"");
+        const std::size_t wanted = std::size_t(size[axis]) + (cells ? 1 : 0);
+        if (planes.size() != wanted)
+            throw Error("axes: " + name + ": " + std::to_string(planes.size()) + " planes, " +
+                        std::to_string(size[axis]) + " samples need " + std::to_string(wanted));
+        try {
+            out.of[std::size_t(axis)] = std::make_shared<const volume::AxisMap>(
+                cells ? volume::AxisMap::Of::Cells : volume::AxisMap::Of::Points, std::move(planes));
+        } catch (const Error& error) {
+            throw Error("axes: " + name + ": " + error.reason());
+        }
+    }
+    return out;
+}
+
 py::dict dictOf(const volume::DatasetInfo& info) {
     py::dict out;
     out["name"] = info.name;
     out["size"] = Index{info.lattice.size.x, info.lattice.size.y, info.lattice.size.z};
     out["spacing"] = tripleOf(info.lattice.spacing);
     out["origin"] = tripleOf(info.lattice.origin);
+    out["axes"] = axesOf(info.lattice.axes);
+    out["coordinates"] = volume::samplePlaces(info.lattice);
     out["length_unit"] = info.lengthUnit;
     out["times"] = info.times;
     out["time_name"] = info.timeName;
@@ -168,7 +208,8 @@ void write(const std::string& path, const py::dict& about, const py::list& param
     lattice.size = vectorOf(size);
     lattice.spacing = {spacing[0], spacing[1], spacing[2]};
     lattice.origin = {origin[0], origin[1], origin[2]};
-    dataset.info.bounds = {lattice.origin, lattice.position(lattice.size - 1)};
+    lattice = volume::withAxes(lattice, axesFrom(about["axes"].cast<py::list>(), lattice.size));
+    dataset.info.bounds = volume::gridBounds(lattice);
     dataset.info.name = about["name"].cast<std::string>();
     dataset.info.lengthUnit = about["length_unit"].cast<std::string>();
     dataset.info.times = about["times"].cast<std::vector<double>>();

@@ -6,6 +6,7 @@
 #include "codec/unpack/prediction.h"
 #include "codec/unpack/stored_dataset.h"
 #include "volume/base/parallel.h"
+#include "volume/field/own_axes.h"
 #include "volume/field/part_masks.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/series_dataset.h"
@@ -136,11 +137,12 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, v
     if (metadata.alternating) source = volume::makeAlternatingSource(archive, filter);
     volume::Dataset dataset;
     dataset.info = archive->info();
-    dataset.info.lattice = target;
+    const Lattice own = volume::withOwnAxes(target); // of the samples that are left
+    dataset.info.lattice = own;
     if (metadata.alternating) atSourceTimes(dataset.info, *archive);
     for (volume::Parameter& parameter : dataset.info.parameters)
         if (!parameter.categorical) parameter.type = ScalarType::F32;
-    dataset.read = [archive, source, target, level, bcc](int parameter, int component, int wanted) {
+    dataset.read = [archive, source, target, own, level, bcc](int parameter, int component, int wanted) {
         const volume::DatasetInfo& info = archive->info();
         // Coarse levels of D4* show the nearest frame.
         const int time = archive->metadata().alternating
@@ -160,8 +162,9 @@ volume::Dataset gridDataset(std::shared_ptr<const Archive> archive, int level, v
         };
         Field coarse = of(0);
         if (bcc && !categorical) coarse = meanOf(coarse, of(1));
+        coarse.lattice = own;
         if (!categorical) return volume::withoutParts(std::move(coarse));
-        Field labels = volume::makeField(target, info.parameters[std::size_t(parameter)].type);
+        Field labels = volume::makeField(own, info.parameters[std::size_t(parameter)].type);
         labels.mask = coarse.mask;
         volume::dispatch(labels.type, [&]<class T>(T) {
             const auto from = coarse.as<float>();

@@ -26,6 +26,25 @@ check "marschner-lobb" 0 "$tessera" generate marschner-lobb -o ml.tsr --size 17x
 check "its list" 0 "$tessera" generate marschner-lobb --list
 grep -q fM out.txt || fail "the list has no fM"
 
+# Axes of uneven spacing: through an archive the samples and the planes stay what they are.
+check "membrane" 0 "$tessera" generate membrane -o m.tsr --size 6x4x20
+check "which is whole, too" 0 "$tessera" verify m.tsr
+check "what it is" 0 "$tessera" info m.tsr
+grep -q "spacing    x [0-9.]* to [0-9.]* mm, y 250 um, z [0-9.]* to [0-9.]* um" out.txt || fail "no spacing: $(cat out.txt)"
+check "its list" 0 "$tessera" generate membrane --list
+grep -q heatFlux out.txt || fail "the list has no heatFlux"
+check "as raw" 0 "$tessera" generate membrane -o direct.raw --size 6x4x20
+check "and from the archive" 0 "$tessera" unpack m.tsr -o back.raw
+cmp direct.raw back.raw && cmp <(sed 's/direct/back/' direct.json) back.json || fail "the archive changed the layers"
+check "as .vtr" 0 "$tessera" generate membrane -o direct.vtr --size 6x4x20
+check "from the archive" 0 "$tessera" unpack m.tsr -o back.vtr
+cmp direct.vtr back.vtr || fail "the archive changed the rectilinear grid"
+check "packed from raw" 0 "$tessera" pack direct.raw -o raw.tsr
+check "and unpacked" 0 "$tessera" unpack raw.tsr -o again.raw
+cmp direct.raw again.raw || fail "packing changed samples"
+check "no image" 2 "$tessera" generate membrane -o bad.vti --size 6x4x20
+say "write .vtr" err.txt
+
 # What is wrong is said, and nothing is left.
 check "no such model" 1 "$tessera" generate frog -o bad.tsr
 check "a size that is none" 1 "$tessera" generate fuel-cell -o bad.tsr --size 7x13

@@ -47,6 +47,19 @@ say "on BCC, from a grid of 11 x 7 x 40" <("$tessera" info bcc.tsr)
 check "samples on BCC" 0 "$tessera" stats bcc.tsr
 say "^T \[K\] .* 92.3 %" out.txt
 
+# Axes of uneven spacing.
+check "axes" 0 "$solver" axes axes.tsr
+check "verify axes" 0 "$tessera" verify axes.tsr
+"$tessera" info axes.tsr --json > axes.json
+python3 - << 'END' || fail "other axes: $(head -c 600 axes.json)"
+import json
+about = json.load(open("axes.json"))
+assert about["times"] == [0, 1] and about["size"] == [4, 3, 2], about
+x, y, z = about["axes"]
+assert y is None and x == {"of": "points", "planes": [0.1, 0.2, 1 / 3, 7]} and z == {"of": "cells", "planes": [-1e-3, 0, 1e-5]}, about
+assert about["bounds"] == [[0.1, 1.75, -1e-3], [7, 3.25, 1e-5]], about["bounds"]
+END
+
 # Killed and started again until it is done.
 kills=0 known=0
 : > said

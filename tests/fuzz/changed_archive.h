@@ -5,6 +5,7 @@
 #include "codec/pack/pack.h"
 #include "tests/codec/make_dataset.h"
 #include "tests/codec/sealed_file.h"
+#include "volume/field/own_axes.h"
 
 #include <bit>
 #include <cmath>
@@ -92,7 +93,8 @@ inline std::vector<char> joined(const Parts& parts) {
 inline std::vector<Parts> makeArchives() {
     const TemporaryFolder folder;
     std::vector<Parts> all;
-    const auto add = [&](glm::ivec3 size, int times, codec::StoredLattice lattice, double maxError, bool parts) {
+    const auto add = [&](glm::ivec3 size, int times, codec::StoredLattice lattice, double maxError, bool parts,
+                         bool uneven = false) {
         volume::Dataset made =
             codec::testing::makeDataset(size,
                                         {{"T", ScalarType::F32, 1, Texture::Smooth, true, false},
@@ -102,6 +104,15 @@ inline std::vector<Parts> makeArchives() {
                                         times);
         if (parts) made.info.parameters[0].parts = {"region", {{0}, {1}}};
         made.info.quantities = {{"voltage", "V", std::vector<double>(std::size_t(times), 0.7)}};
+        if (uneven) {
+            std::vector<double> places;
+            for (int i = 0; i <= size.z; ++i) places.push_back(0.1 * i * i);
+            const auto cells = std::make_shared<const volume::AxisMap>(volume::AxisMap::Of::Cells, places);
+            places.resize(std::size_t(size.x), 1e3);
+            const auto points = std::make_shared<const volume::AxisMap>(volume::AxisMap::Of::Points, places);
+            made.info.lattice = volume::withAxes(made.info.lattice, {{points, nullptr, cells}});
+            made.info.bounds = volume::gridBounds(made.info.lattice);
+        }
         codec::PackOptions options;
         options.brickSize = 8;
         options.lattice = lattice;
@@ -114,6 +125,8 @@ inline std::vector<Parts> makeArchives() {
     add({12, 9, 10}, 1, codec::StoredLattice::BCC, 1e-2, false);
     add({8, 7, 9}, 8, codec::StoredLattice::D4, 1e-2, false);
     add({90, 1, 1}, 1, codec::StoredLattice::CC, 0, false);
+    add({9, 6, 10}, 1, codec::StoredLattice::CC, 0, true, true);
+    add({9, 6, 10}, 2, codec::StoredLattice::BCC, 1e-2, false, true);
     return all;
 }
 

@@ -15,15 +15,15 @@
 namespace tessera::volume {
 namespace {
 
-constexpr int kBins = 200;
+constexpr int kCellBins = 200;
 
 /// Counts of present samples over a range.
 std::vector<int> histogram(const Field& field, Range range) {
-    std::vector<int> counts(kBins);
+    std::vector<int> counts(kCellBins);
     for (std::size_t i = 0; i < field.count(); ++i) {
         if (!field.present(i)) continue;
         const double share = (field.value(i) - range.lo) / (range.hi - range.lo);
-        counts[std::size_t(std::clamp(int(share * kBins), 0, kBins - 1))] += 1;
+        counts[std::size_t(std::clamp(int(share * kCellBins), 0, kCellBins - 1))] += 1;
     }
     return counts;
 }

@@ -1,5 +1,6 @@
 /* A solver for writer.sh: appends computed times to an archive by the C library and acknowledges each on standard output;
- * with the argument "continue" it goes on where the archive ended. "arguments" instead checks what is refused. */
+ * with the argument "continue" it goes on where the archive ended. "arguments" instead checks what is refused, "axes"
+ * writes a grid of uneven spacing. */
 #define _POSIX_C_SOURCE 199309L
 #include "tessera_writer.h"
 
@@ -130,7 +131,37 @@ static int arguments(const char* path) {
     return failures > 0;
 }
 
+/* An axis of cells along z, one of points along x, an even one along y; continued, and refused with other planes. */
+static int axes(const char* path) {
+    const double x[] = {0.1, 0.2, 1.0 / 3, 7}, z[] = {-1e-3, 0, 1e-5};
+    double moved[] = {-1e-3, 1e-6, 1e-5}, falling[] = {0, 2, 1};
+    const tessera_grid grid = {.size = {4, 3, 2}, .spacing = {0, 0.5, 0}, .origin = {0, 2, 0}};
+    const tessera_parameter T = {.name = "T"};
+    tessera_axes uneven = {.planes = {x, NULL, z}, .of = {TESSERA_POINTS, 0, TESSERA_CELLS}}, other = uneven;
+    float samples[24];
+    const void* arrays[] = {samples};
+    for (int i = 0; i < 24; ++i) samples[i] = (float)i;
+    other.planes[2] = falling;
+    refused("falling", tessera_writer_open_axes(path, &grid, &other, &T, 1) == NULL, "axes, z: the planes of the axis do");
+    other = uneven, other.of[0] = 2;
+    refused("no kind", tessera_writer_open_axes(path, &grid, &other, &T, 1) == NULL, "axes, x: the planes are neither");
+    refused("an even axis", tessera_writer_open(path, &grid, &T, 1) == NULL, "spacing must be greater");
+    for (int time = 0; time < 2; ++time) {
+        tessera_grid next = grid;
+        next.continues = time;
+        tessera_writer* writer = tessera_writer_open_axes(path, &next, &uneven, &T, 1);
+        if (!writer || tessera_writer_append(writer, time, arrays) != 0) refused("axes", 1, "\n");
+        tessera_writer_close(writer);
+    }
+    tessera_grid next = grid;
+    next.continues = 1;
+    other = uneven, other.planes[2] = moved;
+    refused("other planes", tessera_writer_open_axes(path, &next, &other, &T, 1) == NULL, "another grid");
+    return failures > 0;
+}
+
 int main(int count, char** words) {
+    if (count == 3 && strcmp(words[1], "axes") == 0) return axes(words[2]);
     if (count == 3 && strcmp(words[1], "arguments") == 0) return arguments(words[2]);
     if (count < 6) return 2;
     return run(words[1], atoi(words[2]), strcmp(words[3], "continue") == 0, atoi(words[4]), atof(words[5]),

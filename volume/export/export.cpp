@@ -4,6 +4,7 @@
 #include "volume/base/number_text.h"
 #include "volume/base/printable.h"
 #include "volume/export/export_formats.h"
+#include "volume/field/own_axes.h"
 
 #include <cmath>
 #include <cstddef>
@@ -134,6 +135,17 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
     return path;
 }
 
+/// Throws Error where a format of one spacing per axis cannot hold the grid.
+void requireEven(const Lattice& lattice, const std::string& ending, const std::string& path) {
+    std::string uneven;
+    for (int axis = 0; axis < 3; ++axis)
+        if (lattice.axes[axis]) uneven += (uneven.empty() ? "" : ", ") + std::string(1, "xyz"[axis]);
+    if (!uneven.empty())
+        throw Error(ending + " holds one spacing per axis, but that along " + uneven +
+                        " is uneven: write .vtr, or .raw with its sidecar",
+                    path);
+}
+
 } // namespace
 
 std::vector<std::string> exportDataset(const Dataset& source, const ExportSelection& selection, const std::string& path,
@@ -147,20 +159,22 @@ std::vector<std::string> exportDataset(const Dataset& source, const ExportSelect
         if (p < 0 || p >= int(info.parameters.size())) throw Error("parameter out of range", path);
     for (const int t : times)
         if (t < 0 || t >= int(info.times.size())) throw Error("time out of range", path);
-    const Dataset dataset = selection.values ? withValues(source, parameters, times) : source;
     const std::string ending = fs::path(path).extension().string();
+    if (ending == ".vti" || ending == ".nrrd") requireEven(info.lattice, ending, path);
+    Dataset dataset = selection.values ? withValues(source, parameters, times) : source;
+    dataset.info.lattice = withOwnAxes(dataset.info.lattice);
     std::vector<std::string> written;
-    if (ending == ".vti" && times.size() == 1) {
-        writeVti(dataset, parameters, times[0], path, progress);
+    if ((ending == ".vti" || ending == ".vtr") && times.size() == 1) {
+        writeVtk(dataset, parameters, times[0], path, progress);
         written = {path};
-    } else if (ending == ".vti" || ending == ".pvd") {
+    } else if (ending == ".vti" || ending == ".vtr" || ending == ".pvd") {
         written = writeSeries(dataset, parameters, times, path, progress);
     } else if (ending == ".nrrd") {
         written = {writeNrrd(dataset, selection, parameters, times, path)};
     } else if (ending == ".raw" || ending == ".json") {
         written = writeRaw(dataset, parameters, times, path, progress);
     } else {
-        throw Error("unknown ending \"" + ending + "\": .vti, .pvd, .nrrd or .raw", path);
+        throw Error("unknown ending \"" + ending + "\": .vti, .vtr, .pvd, .nrrd or .raw", path);
     }
     progress.advance(1);
     return written;

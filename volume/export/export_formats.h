@@ -55,11 +55,12 @@ void writeField(AtomicFile& file, const Field& field);
 /// A text as it stands in XML.
 std::string xmlText(const std::string& text);
 
-/// One time as VTK image data.
-void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,
+/// One time as VTK image data, or as a rectilinear grid where the path ends in .vtr.
+void writeVtk(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,
               const Progress& progress);
 
-/// Times as VTK image data, and the .pvd that lists them; the files written.
+/// Times as image data, of uneven axes and for .vtr as rectilinear grids, and the .pvd that lists them; the files
+/// written.
 std::vector<std::string> writeSeries(const Dataset& dataset, const std::vector<int>& parameters,
                                      const std::vector<int>& times, const std::filesystem::path& path,
                                      const Progress& progress);

@@ -1,4 +1,5 @@
 #include "volume/export/export_formats.h"
+#include "volume/field/axes_json.h"
 #include "volume/field/labels.h"
 
 #include <cmath>
@@ -167,6 +168,7 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     out["layout"] = "[time][component][z][y][x], x fastest";
     out["spacing"] = {lattice.spacing.x, lattice.spacing.y, lattice.spacing.z};
     out["origin"] = {lattice.origin.x, lattice.origin.y, lattice.origin.z};
+    if (!lattice.isEven()) out["axes"] = OrderedJson::parse(axesJson(lattice.axes));
     out["length_unit"] = info.lengthUnit;
     out["components"] = componentsOf(info, parameters, forms);
     out["times"] = OrderedJson::array();

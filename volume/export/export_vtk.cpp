@@ -3,8 +3,10 @@
 #include "volume/export/export_formats.h"
 #include "volume/export/time_files.h"
 #include "volume/field/labels.h"
+#include "volume/field/own_axes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -90,29 +92,93 @@ std::string fieldData(const DatasetInfo& info, const std::vector<int>& parameter
            words("time_unit", info.timeUnit);
 }
 
-/// The header of the file, up to the samples.
+/// Places along each axis that a rectilinear grid states.
+struct Rulers {
+    bool cells = false; ///< values belong to cells between these places, not to the places
+    std::array<std::vector<double>, 3> places;
+};
+
+/// If one axis is of cells, all values are of cells: along the others these end in the middle between samples.
+Rulers rulersOf(const Lattice& lattice) {
+    Rulers rulers{hasCells(lattice.axes), samplePlaces(lattice)};
+    for (int axis = 0; rulers.cells && axis < 3; ++axis) {
+        std::vector<double>& places = rulers.places[std::size_t(axis)];
+        places.clear();
+        for (int i = 0; i <= lattice.size[axis]; ++i)
+            places.push_back(lattice.axes[axis] ? lattice.axes[axis]->border(i)
+                                                : lattice.origin[axis] + lattice.spacing[axis] * (i - 0.5));
+    }
+    return rulers;
+}
+
+std::string extentText(glm::ivec3 points) {
+    return "0 " + std::to_string(points.x - 1) + " 0 " + std::to_string(points.y - 1) + " 0 " +
+           std::to_string(points.z - 1);
+}
+
+/// The arrays of a piece, whose samples begin at byte `offset` of the appended data.
+std::string arraysText(const DatasetInfo& info, const std::vector<Block>& blocks, std::size_t offset) {
+    std::string out;
+    for (const Block& block : blocks) {
+        const Parameter& what = info.parameters[std::size_t(block.parameter)];
+        out += "<DataArray type=\"" + std::string(block.flags ? "UInt8" : vtkName(block.storage.type)) + "\" Name=\"" +
+               xmlText(what.name) + (block.flags ? ".present" : "") + "\"";
+        if (what.components > 1 && !block.flags)
+            out += " NumberOfComponents=\"" + std::to_string(what.components) + "\"";
+        out += " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+        offset += sizeof(std::uint64_t) + bytesOf(block, info);
+    }
+    return out;
+}
+
+std::string openingOf(const std::string& kind) {
+    return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + kind +
+           "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
+}
+
+/// The header of image data, up to the samples.
 std::string headOf(const DatasetInfo& info, const std::vector<int>& parameters, const std::vector<Block>& blocks,
                    int time) {
     const Lattice& lattice = info.lattice;
-    const std::string extent = "0 " + std::to_string(lattice.size.x - 1) + " 0 " + std::to_string(lattice.size.y - 1) +
-                               " 0 " + std::to_string(lattice.size.z - 1);
+    const std::string extent = extentText(lattice.size);
     const auto triple = [](glm::dvec3 v) { return exactText(v.x) + " " + exactText(v.y) + " " + exactText(v.z); };
-    std::string head = "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"1.0\" "
-                       "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
-    head += "<ImageData WholeExtent=\"" + extent + "\" Origin=\"" + triple(lattice.origin) + "\" Spacing=\"" +
-            triple(lattice.spacing) + "\">\n<FieldData>\n" + fieldData(info, parameters, time);
-    head += "</FieldData>\n<Piece Extent=\"" + extent + "\">\n<PointData>\n";
-    std::size_t offset = 0;
-    for (const Block& block : blocks) {
-        const Parameter& what = info.parameters[std::size_t(block.parameter)];
-        head += "<DataArray type=\"" + std::string(block.flags ? "UInt8" : vtkName(block.storage.type)) + "\" Name=\"" +
-                xmlText(what.name) + (block.flags ? ".present" : "") + "\"";
-        if (what.components > 1 && !block.flags)
-            head += " NumberOfComponents=\"" + std::to_string(what.components) + "\"";
-        head += " format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
-        offset += sizeof(std::uint64_t) + bytesOf(block, info);
+    return openingOf("ImageData") + "<ImageData WholeExtent=\"" + extent + "\" Origin=\"" + triple(lattice.origin) +
+           "\" Spacing=\"" + triple(lattice.spacing) + "\">\n<FieldData>\n" + fieldData(info, parameters, time) +
+           "</FieldData>\n<Piece Extent=\"" + extent + "\">\n<PointData>\n" + arraysText(info, blocks, 0) +
+           "</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_";
+}
+
+/// Field data of the axes of points among axes of cells: their places, which borders of cells do not tell.
+std::string pointsText(const Lattice& lattice, const Rulers& rulers) {
+    std::string out;
+    for (int axis = 0; rulers.cells && axis < 3; ++axis) {
+        const AxisMap* map = lattice.axes[axis];
+        if (!map || map->of() == AxisMap::Of::Cells) continue;
+        out += std::string("<DataArray type=\"Float64\" Name=\"points_") + "xyz"[axis] + "\" NumberOfTuples=\"" +
+               std::to_string(map->samples()) + "\" format=\"ascii\">";
+        for (const double place : map->planes()) out += exactText(place) + " ";
+        out += "</DataArray>\n";
     }
-    return head + "</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_";
+    return out;
+}
+
+/// The header of a rectilinear grid, up to its coordinates, which come before the samples.
+std::string headOf(const DatasetInfo& info, const Rulers& rulers, const std::vector<int>& parameters,
+                   const std::vector<Block>& blocks, int time) {
+    const std::string extent = extentText(info.lattice.size + (rulers.cells ? 1 : 0));
+    const std::string values = rulers.cells ? "CellData" : "PointData";
+    std::string coordinates;
+    std::size_t offset = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        coordinates += std::string("<DataArray type=\"Float64\" Name=\"") + "xyz"[axis] +
+                       "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+        offset += sizeof(std::uint64_t) + rulers.places[axis].size() * sizeof(double);
+    }
+    return openingOf("RectilinearGrid") + "<RectilinearGrid WholeExtent=\"" + extent + "\">\n<FieldData>\n" +
+           fieldData(info, parameters, time) + pointsText(info.lattice, rulers) + "</FieldData>\n<Piece Extent=\"" +
+           extent + "\">\n<Coordinates>\n" + coordinates + "</Coordinates>\n<" + values + ">\n" +
+           arraysText(info, blocks, offset) + "</" + values +
+           ">\n</Piece>\n</RectilinearGrid>\n<AppendedData encoding=\"raw\">\n_";
 }
 
 /// The samples of a vector, components interleaved.
@@ -130,16 +196,27 @@ std::vector<std::byte> tuplesOf(const Dataset& dataset, const Block& block, int 
 
 } // namespace
 
-void writeVti(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,
+void writeVtk(const Dataset& dataset, const std::vector<int>& parameters, int time, const std::string& path,
               const Progress& progress) {
+    const DatasetInfo& info = dataset.info;
     const std::vector<Block> blocks = blocksOf(dataset, parameters, time);
     AtomicFile file(path);
-    file.write(headOf(dataset.info, parameters, blocks, time));
+    if (fs::path(path).extension() == ".vtr") {
+        const Rulers rulers = rulersOf(info.lattice);
+        file.write(headOf(info, rulers, parameters, blocks, time));
+        for (const std::vector<double>& places : rulers.places) {
+            const std::uint64_t size = places.size() * sizeof(double);
+            file.write(&size, sizeof size);
+            file.write(places.data(), size);
+        }
+    } else {
+        file.write(headOf(info, parameters, blocks, time));
+    }
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         const Block& block = blocks[b];
-        const Parameter& what = dataset.info.parameters[std::size_t(block.parameter)];
+        const Parameter& what = info.parameters[std::size_t(block.parameter)];
         progress.advance(double(b) / double(blocks.size()), what.name);
-        const std::uint64_t size = bytesOf(block, dataset.info);
+        const std::uint64_t size = bytesOf(block, info);
         file.write(&size, sizeof size);
         if (block.flags) {
             const auto flags = presenceOf(dataset.read(block.parameter, 0, time));
@@ -160,10 +237,10 @@ std::vector<std::string> writeSeries(const Dataset& dataset, const std::vector<i
     std::vector<std::string> written;
     std::vector<double> at;
     fs::path name = path;
-    name.replace_extension(".vti");
+    name.replace_extension(dataset.info.lattice.isEven() && path.extension() != ".vtr" ? ".vti" : ".vtr");
     for (std::size_t t = 0; t < times.size(); ++t) {
         const std::string frame = fileOfTime(name.string(), t);
-        writeVti(dataset, parameters, times[t], frame,
+        writeVtk(dataset, parameters, times[t], frame,
                  progress.part(double(t) / double(times.size()), double(t + 1) / double(times.size())));
         written.push_back(frame);
         at.push_back(dataset.info.times[std::size_t(times[t])]);

@@ -1,6 +1,7 @@
 #include "volume/import/common_grid.h"
 
 #include "volume/base/error.h"
+#include "volume/field/own_axes.h"
 #include "volume/import/mesh_planes.h"
 
 #include <algorithm>
@@ -19,26 +20,12 @@ std::string words(glm::ivec3 size) {
     return std::to_string(size.x) + " x " + std::to_string(size.y) + " x " + std::to_string(size.z);
 }
 
-/// Whether planes agree to 1e-4 of the least length beside each.
-bool samePlanes(const AxisMap& a, const AxisMap& b) {
-    if (a.of() != b.of()) return false;
-    const std::vector<double>&p = a.planes(), &q = b.planes();
-    for (std::size_t i = 0; i < p.size(); ++i) {
-        double length = std::numeric_limits<double>::max();
-        if (i > 0) length = p[i] - p[i - 1];
-        if (i + 1 < p.size()) length = std::min(length, p[i + 1] - p[i]);
-        if (std::abs(p[i] - q[i]) > 1e-4 * length) return false;
-    }
-    return true;
-}
-
 bool sameLattice(const Lattice& a, const Lattice& b) {
     if (a.size != b.size) return false;
+    constexpr double kShare = 1e-4; // of a cell
     for (int axis = 0; axis < 3; ++axis) {
-        const AxisMap *mapA = a.axes[axis], *mapB = b.axes[axis];
-        if ((mapA == nullptr) != (mapB == nullptr)) return false;
-        if (mapA != nullptr && !samePlanes(*mapA, *mapB)) return false;
-        const double tolerance = 1e-4 * a.spacing[axis];
+        if (!samePlanes(a.axes[axis], b.axes[axis], kShare)) return false;
+        const double tolerance = kShare * a.spacing[axis];
         if (std::abs(a.spacing[axis] - b.spacing[axis]) * std::max(a.size[axis] - 1, 1) > tolerance ||
             std::abs(a.origin[axis] - b.origin[axis]) > tolerance)
             return false;

@@ -4,6 +4,7 @@
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
+#include "volume/synthetic/membrane.h"
 #include "volume/synthetic/planted.h"
 
 namespace tessera::volume {
@@ -27,7 +28,8 @@ template <Dataset (*make)(const Settings&)> Dataset atOnce(const Settings& setti
 constexpr Model kModels[] = {{"fuel-cell", makeFuelCell},
                              {"planted", makePlanted},
                              {"marschner-lobb", atOnce<makeMarschnerLobb>},
-                             {"casting", atOnce<makeCasting>}};
+                             {"casting", atOnce<makeCasting>},
+                             {"membrane", atOnce<makeMembrane>}};
 
 } // namespace
 

@@ -263,7 +263,7 @@ void addDiffCommand(CLI::App& app) {
     command->add_option("B", request->second, "Archive or data file to subtract from it")->required();
     command->add_option("-o,--output", request->output,
                         "File to write: a table over all times (.csv), a picture (.png) or the differences as data "
-                        "(.tsr, .vti, .pvd, .nrrd, .raw)");
+                        "(.tsr, .vti, .vtr, .pvd, .nrrd, .raw)");
     command->add_option("-p,--only", request->parameters, "Only these parameters, separated by commas")->delimiter(',');
     addImportOptions(*command, request->import);
     command->callback([request] { run(*request); });

@@ -4,6 +4,7 @@
 #include "app/data/import_options.h"
 #include "app/data/open.h"
 #include "app/data/picture_session.h"
+#include "app/data/spacing_text.h"
 #include "app/described/describe_cli.h"
 #include "app/history/session_file.h"
 #include "app/user_files/import_memory.h"
@@ -14,6 +15,7 @@
 #include "codec/remote/address.h"
 #include "volume/base/byte_text.h"
 #include "volume/base/terminal.h"
+#include "volume/field/axes_json.h"
 #include "volume/import/find_parts.h"
 #include "volume/import/import.h"
 
@@ -85,38 +87,41 @@ Json archiveJson(const codec::Archive& archive) {
     }
     for (int level = 0; level < grid.levels; ++level)
         levels.push_back({{"samples", vectorJson(grid.levelSamples(level))}, {"bytes", archive.levelBytes(level)}});
-    return {{"kind", "archive"},
-            {"file", archive.path()},
-            {"bytes", archive.fileBytes()},
-            {"version", archive.version()},
-            {"commits", archive.commits()},
-            {"storedBytes", stored},
-            {"name", info.name},
-            {"lattice", archive.metadata().alternating ? "d4" : volume::kLatticeNames[std::size_t(info.lattice.kind)]},
-            {"size", vectorJson(info.lattice.size)},
-            {"spacing", vectorJson(info.lattice.spacing)},
-            {"origin", vectorJson(info.lattice.origin)},
-            {"sourceSize", vectorJson(archive.metadata().source.size)},
-            {"bounds", {vectorJson(info.bounds.lo), vectorJson(info.bounds.hi)}},
-            {"lengthUnit", info.lengthUnit},
-            {"parameters", std::move(parameters)},
-            {"times", info.times},
-            {"timeName", info.timeName},
-            {"timeUnit", info.timeUnit},
-            {"quantities", quantitiesJson(info)},
-            {"brickSize", grid.brickSize},
-            {"levels", std::move(levels)},
-            {"masks", archive.maskCount()},
-            {"maskBytes", archive.maskBytes()},
-            {"correctionBytes", bytesOf(archive.metadata().corrections)},
-            {"regionNumberBytes", bytesOf(archive.metadata().numbers)},
-            {"repeatedBricks", archive.repeats().bricks},
-            {"repeatedBytes", archive.repeats().bytes},
-            {"lossless", archive.metadata().lossless && !codec::isResampled(archive.metadata())},
-            {"maxError", archive.metadata().maxError},
-            {"exactness", codec::exactnessText(archive.metadata())},
-            {"provenance", info.provenance},
-            {"notes", info.notes}};
+    Json document = {
+        {"kind", "archive"},
+        {"file", archive.path()},
+        {"bytes", archive.fileBytes()},
+        {"version", archive.version()},
+        {"commits", archive.commits()},
+        {"storedBytes", stored},
+        {"name", info.name},
+        {"lattice", archive.metadata().alternating ? "d4" : volume::kLatticeNames[std::size_t(info.lattice.kind)]},
+        {"size", vectorJson(info.lattice.size)},
+        {"spacing", vectorJson(info.lattice.spacing)},
+        {"origin", vectorJson(info.lattice.origin)},
+        {"sourceSize", vectorJson(archive.metadata().source.size)},
+        {"bounds", {vectorJson(info.bounds.lo), vectorJson(info.bounds.hi)}},
+        {"lengthUnit", info.lengthUnit},
+        {"parameters", std::move(parameters)},
+        {"times", info.times},
+        {"timeName", info.timeName},
+        {"timeUnit", info.timeUnit},
+        {"quantities", quantitiesJson(info)},
+        {"brickSize", grid.brickSize},
+        {"levels", std::move(levels)},
+        {"masks", archive.maskCount()},
+        {"maskBytes", archive.maskBytes()},
+        {"correctionBytes", bytesOf(archive.metadata().corrections)},
+        {"regionNumberBytes", bytesOf(archive.metadata().numbers)},
+        {"repeatedBricks", archive.repeats().bricks},
+        {"repeatedBytes", archive.repeats().bytes},
+        {"lossless", archive.metadata().lossless && !codec::isResampled(archive.metadata())},
+        {"maxError", archive.metadata().maxError},
+        {"exactness", codec::exactnessText(archive.metadata())},
+        {"provenance", info.provenance},
+        {"notes", info.notes}};
+    if (!info.lattice.isEven()) document["axes"] = Json::parse(volume::axesJson(info.lattice.axes));
+    return document;
 }
 
 std::string triple(glm::ivec3 v) {
@@ -134,6 +139,9 @@ void printArchive(const codec::Archive& archive) {
         : info.lattice.kind == volume::LatticeKind::BCC ? "BCC"
                                                         : "CC",
         triple(archive.metadata().source.size).c_str());
+    volume::DatasetInfo ofSource = info;
+    ofSource.lattice = archive.metadata().source;
+    if (const std::string spacing = spacingText(ofSource); !spacing.empty()) say("  spacing    %s\n", spacing.c_str());
     say("  extent     %s x %s x %s%s%s\n", numberText(extent.x).c_str(), numberText(extent.y).c_str(),
         numberText(extent.z).c_str(), info.lengthUnit.empty() ? "" : " ", info.lengthUnit.c_str());
     say("  times      %s\n", timesText(info).c_str());

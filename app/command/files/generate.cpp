@@ -8,6 +8,7 @@
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
+#include "volume/synthetic/membrane.h"
 #include "volume/synthetic/models.h"
 
 #include <CLI/CLI.hpp>
@@ -74,10 +75,13 @@ void listSettings(const std::string& model) {
     const volume::FuelCellSettings cell;
     const volume::MarschnerLobbSettings signal;
     const volume::CastingSettings casting;
+    const volume::MembraneSettings membrane;
     if (model == "marschner-lobb")
         volume::MarschnerLobbSettings::describe(signal, PrintSetting());
     else if (model == "casting")
         volume::CastingSettings::describe(casting, PrintSetting());
+    else if (model == "membrane")
+        volume::MembraneSettings::describe(membrane, PrintSetting());
     else
         volume::FuelCellSettings::describe(cell, PrintSetting());
 }
@@ -90,9 +94,10 @@ void run(const GenerateRequest& request) {
     }
     const bool archive = hasEnding(request.output, ".tsr");
     bool known = archive;
-    for (const char* ending : {".vti", ".pvd", ".raw", ".json", ".nrrd"}) known |= hasEnding(request.output, ending);
+    for (const char* ending : {".vti", ".vtr", ".pvd", ".raw", ".json", ".nrrd"})
+        known |= hasEnding(request.output, ending);
     if (!known)
-        throw Error("cannot write this kind of file; use a name ending in .tsr, .vti, .pvd, .raw or .nrrd",
+        throw Error("cannot write this kind of file; use a name ending in .tsr, .vti, .vtr, .pvd, .raw or .nrrd",
                     request.output);
 
     const Progress progress = terminalProgress("generate");
@@ -114,12 +119,12 @@ void addGenerateCommand(CLI::App& app) {
     const auto request = std::make_shared<GenerateRequest>();
     command
         ->add_option("MODEL", request->model,
-                     "fuel-cell, planted (the fuel cell with added events of known place), marschner-lobb or casting "
-                     "(a CT scan)")
+                     "fuel-cell, planted (the fuel cell with added events of known place), marschner-lobb, casting "
+                     "(a CT scan) or membrane (layers of known integrals, with uneven spacing)")
         ->required()
         ->check(CLI::IsMember(volume::modelNames()));
     CLI::Option* output =
-        command->add_option("-o,--output", request->output, "File to write: .tsr, .vti (.pvd), .raw or .nrrd");
+        command->add_option("-o,--output", request->output, "File to write: .tsr, .vti or .vtr (.pvd), .raw or .nrrd");
     command->add_option("--size", request->size, "Samples, e.g. 11x13x101")->type_name("NXxNYxNZ");
     command->add_option("--times", request->times, "Number of times");
     command->add_option("--set", request->settings, "A setting of the model")->type_name("KEY=NUMBER");

@@ -105,7 +105,7 @@ void run(const UnpackRequest& request) {
 } // namespace
 
 void addUnpackCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("unpack", "Write an archive as a regular grid: .raw, .vti, .pvd or .nrrd");
+    CLI::App* command = app.add_subcommand("unpack", "Write an archive as a grid: .raw, .vti, .vtr, .pvd or .nrrd");
     const auto request = std::make_shared<UnpackRequest>();
     command->add_option("IN", request->input, "Archive (.tsr), also by its address on another machine")->required();
     command->add_option("-o,--output", request->output, "File to write; its ending chooses the format")->required();

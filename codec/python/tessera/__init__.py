@@ -10,6 +10,7 @@
     run["U"][0]                           # a vector: [z, y, x, 3]
 
     tessera.write("new.tsr", {"T": values}, times=[0, 1], spacing=(1e-4, 1e-4, 4e-4), units={"T": "K"})
+    tessera.write("new.tsr", {"T": values}, axes=(None, None, ("cells", borders)))  # layers along z
 
 Arrays are indexed [time, z, y, x(, component)]; sizes, spacings and origins are given as (x, y, z). Absent samples are
 masked. What an archive stores on the body-centred lattice is resampled to the grid it came from, as `tessera unpack`
@@ -73,10 +74,17 @@ class Archive:
         """Samples along (x, y, z)."""
         return tuple(self._reader.info(level)["size"])
 
+    def axes(self, level=0):
+        """Axes of uneven spacing along x, y and z: None for an even one, else ("cells", borders of the cells, one more
+        than samples) or ("points", places of the samples), in `length_unit`."""
+        return tuple(axis and (axis[0], np.array(axis[1])) for axis in self._reader.info(level)["axes"])
+
     def coordinates(self, level=0):
         """Positions of the samples along x, y and z, in `length_unit`: three arrays."""
         info = self._reader.info(level)
-        return tuple(o + d * np.arange(n) for o, d, n in zip(info["origin"], info["spacing"], info["size"]))
+        even = (o + d * np.arange(n) for o, d, n in zip(info["origin"], info["spacing"], info["size"]))
+        return tuple(each if axis is None else np.array(places)
+                     for each, axis, places in zip(even, info["axes"], info["coordinates"]))
 
     def __repr__(self):
         x, y, z = self.size()
@@ -170,7 +178,8 @@ def open(path):
 
 
 def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, units=None, labels=None, name="",
-          length_unit="", time_name="time", time_unit="s", quantities=None, lattice="cc", max_error=0, **options):
+          length_unit="", time_name="time", time_unit="s", quantities=None, lattice="cc", max_error=0, axes=None,
+          **options):
     """Packs arrays into an archive.
 
     parameters: arrays by name, [z, y, x] or [time, z, y, x], vectors with a last axis of 3; uint8, int16, uint16, int32
@@ -178,6 +187,8 @@ def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, 
         array of four axes whose last has 3 members is a vector at one time.
     times: one number for each time, rising; by default 0, 1, ...
     spacing, origin: (x, y, z) in length_unit ("": not stated).
+    axes: of uneven spacing, as Archive.axes() gives them: for x, y and z None (even, by spacing and origin),
+        ("cells", n + 1 borders of the cells of n samples) or ("points", n places of the samples).
     units: by parameter. labels: {parameter: {value: name}} makes a parameter of integers a label.
     quantities: {name: (unit, values over times)}.
     lattice: "cc" keeps every sample, "bcc" resamples to 70.7 % of them, "d4" to 50 % in space and time.
@@ -223,7 +234,11 @@ def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, 
     for key, _, values in quantities:
         if len(values) != len(times):
             raise Error(f"{path}: {key} has {len(values)} values for {len(times)} times")
-    about = {"size": shape[:0:-1], "spacing": tuple(map(float, spacing)), "origin": tuple(map(float, origin)),
+    axes = [None] * 3 if axes is None else list(axes)
+    if len(axes) != 3:
+        raise Error(f"{path}: {len(axes)} axes, not three (x, y, z)")
+    axes = [_axis(path, name, axis) for name, axis in zip("xyz", axes)]
+    about = {"size": shape[:0:-1], "axes": axes, "spacing": tuple(map(float, spacing)), "origin": tuple(map(float, origin)),
              "name": name, "length_unit": length_unit, "times": times, "time_name": time_name, "time_unit": time_unit,
              "quantities": quantities}
     if lattice not in ("cc", "bcc", "d4"):
@@ -235,6 +250,20 @@ def write(path, parameters, times=None, spacing=(1, 1, 1), origin=(0, 0, 0), *, 
     if max_error > 0:
         options.update(maxError=max_error, lossless=False)
     _write(os.fspath(path), about, given, json.dumps(options))
+
+
+def _axis(path, name, axis):
+    """One of `axes` as (what its planes are, list of numbers)."""
+    if axis is None:
+        return None
+    try:
+        of, planes = axis
+        planes = np.asarray(planes, dtype=np.float64)
+    except (TypeError, ValueError):
+        planes = np.empty(0)
+    if planes.ndim != 1 or planes.size == 0 or not isinstance(of, str):
+        raise Error(f"{path}: axes: {name} is neither None, nor (\"cells\" or \"points\", numbers)")
+    return of, planes.tolist()
 
 
 def _samples(name, values, times):

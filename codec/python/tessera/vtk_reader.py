@@ -1,11 +1,11 @@
-"""Archives as vtkImageData, for VTK and (by paraview_plugin.py) ParaView. Each parameter is an array of point data, in
-its unit; absent samples of numbers are NaN (integers with absent samples become floats), those of labels are 0.
+"""Archives as vtkImageData, for VTK and (by paraview_plugin.py) ParaView. Archives with an axis of uneven spacing are
+vtkRectilinearGrid, with cell data if an axis is of cells. Each parameter is an array of point or cell data, in its unit; absent samples of numbers are NaN (integers with absent samples become floats), those of labels are 0.
 """
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.util.vtkAlgorithm import VTKPythonAlgorithmBase
 from vtkmodules.vtkCommonCore import vtkDataArraySelection
-from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkImageData, vtkRectilinearGrid
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline as Pipeline
 
 import tessera
@@ -15,7 +15,7 @@ class TesseraReader(VTKPythonAlgorithmBase):
     """Reads the time asked for, at a level of detail (0 = every sample), of the parameters that are switched on."""
 
     def __init__(self):
-        super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkImageData")
+        super().__init__(nInputPorts=0, nOutputPorts=1, outputType="vtkDataSet")
         self._path, self._level, self._archive = "", 0, None
         self._arrays = vtkDataArraySelection()
         self._arrays.AddObserver("ModifiedEvent", lambda *_: self.Modified())
@@ -47,9 +47,16 @@ class TesseraReader(VTKPythonAlgorithmBase):
     def _level_read(self):
         return min(max(self._level, 0), self._opened().levels - 1)
 
+    def RequestDataObject(self, request, inputs, outputs):
+        information = outputs.GetInformationObject(0)
+        kind = vtkRectilinearGrid if self._path and any(self._opened().axes(self._level_read())) else vtkImageData
+        if not isinstance(information.Get(vtkDataObject.DATA_OBJECT()), kind):
+            information.Set(vtkDataObject.DATA_OBJECT(), kind())
+        return 1
+
     def RequestInformation(self, request, inputs, outputs):
         archive, information = self._opened(), outputs.GetInformationObject(0)
-        axes = archive.coordinates(self._level_read())
+        axes, _ = _rulers(archive, self._level_read())
         information.Set(Pipeline.WHOLE_EXTENT(), [bound for axis in axes for bound in (0, len(axis) - 1)], 6)
         information.Set(vtkDataObject.ORIGIN(), [axis[0] for axis in axes], 3)
         information.Set(vtkDataObject.SPACING(), _spacing(axes), 3)
@@ -65,11 +72,15 @@ class TesseraReader(VTKPythonAlgorithmBase):
         level, time = self._level_read(), 0
         if information.Has(Pipeline.UPDATE_TIME_STEP()):
             time = int(np.abs(archive.times - information.Get(Pipeline.UPDATE_TIME_STEP())).argmin())
-        axes = archive.coordinates(level)
-        image = vtkImageData.GetData(information)
-        image.SetDimensions([len(axis) for axis in axes])
-        image.SetOrigin([axis[0] for axis in axes])
-        image.SetSpacing(_spacing(axes))
+        axes, cells = _rulers(archive, level)
+        grid = information.Get(vtkDataObject.DATA_OBJECT())
+        grid.SetDimensions([len(axis) for axis in axes])
+        if any(archive.axes(level)):
+            for put, axis in zip((grid.SetXCoordinates, grid.SetYCoordinates, grid.SetZCoordinates), axes):
+                put(numpy_to_vtk(axis, deep=True))
+        else:
+            grid.SetOrigin([axis[0] for axis in axes])
+            grid.SetSpacing(_spacing(axes))
         for name in archive:
             if not self._arrays.ArrayIsEnabled(name):
                 continue
@@ -83,9 +94,26 @@ class TesseraReader(VTKPythonAlgorithmBase):
             flat = np.ascontiguousarray(np.ma.getdata(values)).reshape(-1, parameter.components)
             array = numpy_to_vtk(flat if parameter.components > 1 else flat[:, 0], deep=True)
             array.SetName(name)
-            image.GetPointData().AddArray(array)
-        image.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), float(archive.times[time]))
+            (grid.GetCellData() if cells else grid.GetPointData()).AddArray(array)
+        grid.GetInformation().Set(vtkDataObject.DATA_TIME_STEP(), float(archive.times[time]))
         return 1
+
+
+def _rulers(archive, level):
+    """Coordinates along x, y and z, and whether values belong to the cells between them: where an axis is of cells, all
+    are. Even axes then have borders half a cell from the samples, axes of points in the middle between them."""
+    axes, places = archive.axes(level), archive.coordinates(level)
+    if not any(axis and axis[0] == "cells" for axis in axes):
+        return places, False
+    rulers = []
+    for axis, at, step in zip(axes, places, archive._reader.info(level)["spacing"]):
+        if axis is None:
+            rulers.append(at[0] + step * (np.arange(len(at) + 1) - 0.5))
+        elif axis[0] == "cells":
+            rulers.append(axis[1])
+        else:
+            rulers.append(np.concatenate((at[:1], 0.5 * (at[:-1] + at[1:]), at[-1:])))
+    return rulers, True
 
 
 def _spacing(axes):

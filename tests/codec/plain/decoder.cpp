@@ -92,7 +92,7 @@ Decoder::Decoder(std::vector<char> file) : file_(file.begin(), file.end()) {
         Piece found[2];
         for (Piece& part : found) part = readPiece(in);
         if (in.number(8) != XXH3_64bits(file_.data() + at, 72) || version != 3 ||
-            (features & ~(1023u | 2048u | 4096u | 8192u)) != 0)
+            (features & ~(1023u | 2048u | 4096u | 8192u | 16384u)) != 0)
             return false;
         if (end > file_.size()) return false;
         if (end <= end_) return true; // the other copy is as good or better

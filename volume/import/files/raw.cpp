@@ -1,6 +1,7 @@
 #include "volume/import/files/raw.h"
 
 #include "volume/base/error.h"
+#include "volume/field/own_axes.h"
 #include "volume/system/input_file.h"
 
 #include <algorithm>
@@ -210,6 +211,8 @@ FileBlock openForm(const RawForm& form, const std::string& path, const std::stri
     block.file = path;
     block.format = format;
     block.lattice = form.lattice;
+    block.cellData = hasCells(form.lattice.axes);
+    if (block.cellData) block.box = gridBounds(form.lattice);
     block.times = form.times;
     block.lengthUnit = form.lengthUnit;
     block.timeName = form.timeName;

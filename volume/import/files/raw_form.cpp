@@ -1,5 +1,6 @@
 // Reads the form of a raw file: the JSON sidecar and the text of --raw.
 #include "volume/base/error.h"
+#include "volume/field/axes_json.h"
 #include "volume/field/labels.h"
 #include "volume/import/files/import_limits.h"
 #include "volume/import/files/raw.h"
@@ -168,6 +169,15 @@ RawForm::Component readComponent(const json& entry, const std::string& file, con
     return component;
 }
 
+/// Sets the axes that a sidecar states, and their sheet.
+void takeAxes(const Reader& reader, Lattice& lattice) {
+    const json *axes = reader.find("axes"), *origin = reader.find("origin");
+    if (axes == nullptr) return;
+    const bool statesSheet = reader.find("spacing") != nullptr && origin != nullptr && origin->is_array();
+    const std::string text = axes->dump(-1, ' ', false, json::error_handler_t::replace);
+    lattice = withStatedAxes(lattice, statesSheet, text, reader.file, "axes");
+}
+
 Quantity readQuantity(const json& entry, std::size_t frames, const std::string& file, const std::string& path) {
     if (!entry.is_object()) throw Error("must be an object", file, path);
     const Reader reader{entry, file, path + "."};
@@ -217,6 +227,7 @@ RawForm parseSidecar(std::string_view text, const std::string& file) {
         else
             form.lattice.origin = reader.triple("origin", glm::dvec3(0));
     }
+    takeAxes(reader, form.lattice);
     if (reader.find("provenance") != nullptr) form.provenance = reader.text("provenance");
     form.lengthUnit = reader.text("length_unit");
     form.timeName = reader.text("time_name");

@@ -1,7 +1,9 @@
 #include "volume/import/files/stream.h"
 
 #include "volume/base/error.h"
+#include "volume/field/axes_json.h"
 #include "volume/field/labels.h"
+#include "volume/field/own_axes.h"
 #include "volume/import/files/import_limits.h"
 
 #include <algorithm>
@@ -113,21 +115,6 @@ Quantity parseQuantity(const json& entry, std::size_t times, const std::string& 
     return quantity;
 }
 
-AxisMaps parseAxes(const json& list, const HeaderReader& reader) {
-    if (!list.is_array() || list.size() != 3) reader.fail("axes");
-    AxisMaps axes;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (list[axis].is_null()) continue;
-        const HeaderReader own{list[axis], reader.file, reader.place + "axes."};
-        if (!list[axis].is_object()) own.fail("");
-        const std::string of = own.text("of");
-        if (of != "cells" && of != "points") own.fail("of");
-        axes.of[axis] = std::make_shared<const AxisMap>(of == "cells" ? AxisMap::Of::Cells : AxisMap::Of::Points,
-                                                        own.numbers("planes", 2, kMostSamplesPerAxis + 1));
-    }
-    return axes;
-}
-
 AxisEvents parseEvents(const json& numbers, const HeaderReader& reader) {
     if (!numbers.is_array() || numbers.size() % kNumbersOfEvent != 0 || numbers.size() > kNumbersOfEvent * kMostEvents)
         reader.fail("events");
@@ -174,12 +161,13 @@ void parseGrid(FileBlock& block, const HeaderReader& reader) {
         samples *= n;
     }
     if (samples > 1e12) reader.fail("dims");
-    if (const auto axes = reader.object.find("axes"); axes != reader.object.end()) {
-        const glm::ivec3 size = block.lattice.size;
-        block.lattice = withAxes(block.lattice, parseAxes(*axes, reader));
-        if (block.lattice.size != size) reader.fail("axes");
-        parseCells(block, reader);
-    }
+    const auto axes = reader.object.find("axes");
+    if (axes == reader.object.end()) return;
+    block.lattice = withStatedAxes(block.lattice, true, axes->dump(-1, ' ', false, json::error_handler_t::replace),
+                                   reader.file, reader.place + "axes");
+    block.cellData = hasCells(block.lattice.axes);
+    block.box = gridBounds(block.lattice);
+    if (reader.object.contains("cells")) parseCells(block, reader);
 }
 
 FileBlock parseBlock(const json& entry, const std::string& file, const std::string& place) {
@@ -200,7 +188,7 @@ FileBlock parseBlock(const json& entry, const std::string& file, const std::stri
     }
     block.mesh = reader.flag("mesh");
     block.cellData = (block.mesh || entry.contains("cellData")) && reader.flag("cellData");
-    if (block.mesh || block.cellData || entry.contains("axes")) {
+    if (block.mesh || block.cellData) {
         const std::vector<double> box = reader.numbers("box", 6, 6);
         block.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
     }
