@@ -1,6 +1,6 @@
 #include "volume/analysis/statistics.h"
 
-#include "tests/volume/fields.h"
+#include "tests/volume/cell_data.h"
 #include "volume/sources/memory_source.h"
 
 #include <cmath>
@@ -71,18 +71,25 @@ TEST(Statistics, AgreesWithBruteForce) {
         };
         const auto doi = [&](std::size_t i) { return doiOf(std::array{value(0, i), value(1, i), value(2, i)}); };
         const std::size_t count = fields[0].count();
+        std::vector<double> cell; // volume of each sample's
+        test::forAll(fields[0].lattice, [&](glm::ivec3 at, std::size_t) {
+            cell.push_back(0.5);
+            for (int axis = 0; axis < 3; ++axis)
+                cell.back() *= test::cellLength(fields[0].lattice, dataset.info.bounds, at, axis);
+        });
         for (int c = 0; c < 3; ++c) {
             const ChannelStatistics& channel = result.channels[std::size_t(c)];
             std::vector<std::uint64_t> bins(kBins);
             std::vector<double> focus(kBins);
             for (const bool inside : {true, false}) {
-                double n = 0, sum = 0, squares = 0, lo = INFINITY, hi = -INFINITY;
+                double n = 0, volume = 0, sum = 0, squares = 0, lo = INFINITY, hi = -INFINITY;
                 for (std::size_t i = 0; i < count; ++i) {
                     const double v = double(value(c, i));
                     if (std::isnan(v)) continue;
                     const double weight = inside ? doi(i) : 1 - doi(i);
                     n += weight;
-                    sum += weight * v;
+                    volume += weight * cell[i];
+                    sum += weight * cell[i] * v;
                     if ((doi(i) >= 0.5) != inside) continue;
                     lo = std::min(lo, v);
                     hi = std::max(hi, v);
@@ -93,7 +100,8 @@ TEST(Statistics, AgreesWithBruteForce) {
                 }
                 for (std::size_t i = 0; i < count; ++i) {
                     const double v = double(value(c, i));
-                    if (!std::isnan(v)) squares += (inside ? doi(i) : 1 - doi(i)) * (v - sum / n) * (v - sum / n);
+                    const double apart = v - sum / volume;
+                    if (!std::isnan(v)) squares += (inside ? doi(i) : 1 - doi(i)) * cell[i] * apart * apart;
                 }
                 const Summary& summary = inside ? channel.inside : channel.outside;
                 EXPECT_NEAR(summary.samples, n, 1e-6 * (1 + n));
@@ -101,8 +109,8 @@ TEST(Statistics, AgreesWithBruteForce) {
                     EXPECT_TRUE(std::isnan(summary.mean));
                     continue;
                 }
-                EXPECT_NEAR(summary.mean, sum / n, 1e-7);
-                EXPECT_NEAR(summary.deviation, std::sqrt(squares / n), 1e-5);
+                EXPECT_NEAR(summary.mean, sum / volume, 1e-7);
+                EXPECT_NEAR(summary.deviation, std::sqrt(squares / volume), 1e-5);
                 if (lo > hi) continue; // none of weight 1/2
                 EXPECT_EQ(summary.min, lo);
                 EXPECT_EQ(summary.max, hi);
@@ -116,8 +124,8 @@ TEST(Statistics, AgreesWithBruteForce) {
         for (const JointHistogram& joint : result.joint) {
             std::vector<std::uint64_t> bins(kBins * kBins);
             std::vector<double> focus(kBins * kBins);
-            std::vector<double> third(kBins * kBins), thirdCount(kBins * kBins);
-            double n = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
+            std::vector<double> third(kBins * kBins), thirdVolume(kBins * kBins);
+            double n = 0, volume = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
             const auto both = [&](std::size_t i) {
                 return !std::isnan(value(joint.x, i)) && !std::isnan(value(joint.y, i));
             };
@@ -125,26 +133,27 @@ TEST(Statistics, AgreesWithBruteForce) {
                 if (!both(i)) continue;
                 const double x = double(value(joint.x, i)), y = double(value(joint.y, i));
                 ++n;
-                mx += x;
-                my += y;
+                volume += cell[i];
+                mx += cell[i] * x;
+                my += cell[i] * y;
                 const int bx = binOf(joint.xRange, x), by = binOf(joint.yRange, y);
                 if (bx < 0 || by < 0) continue;
                 ++bins[std::size_t(by * kBins + bx)];
                 focus[std::size_t(by * kBins + bx)] += doi(i);
                 if (std::isnan(value(1, i))) continue;
-                third[std::size_t(by * kBins + bx)] += std::clamp(double(value(1, i)), -20.0, 100.0);
-                ++thirdCount[std::size_t(by * kBins + bx)];
+                third[std::size_t(by * kBins + bx)] += cell[i] * std::clamp(double(value(1, i)), -20.0, 100.0);
+                thirdVolume[std::size_t(by * kBins + bx)] += cell[i];
             }
             for (std::size_t b = 0; b < bins.size(); ++b) {
-                EXPECT_EQ(std::isnan(joint.mean[b]), thirdCount[b] == 0);
-                if (thirdCount[b] > 0) {
-                    EXPECT_NEAR(joint.mean[b], third[b] / thirdCount[b], 120.0 / 65535);
+                EXPECT_EQ(std::isnan(joint.mean[b]), thirdVolume[b] == 0);
+                if (thirdVolume[b] > 0) {
+                    EXPECT_NEAR(joint.mean[b], third[b] / thirdVolume[b], 120.0 / 65535);
                 }
             }
-            // Correlation weighted by the degree of interest, by its definition.
+            // Correlation weighted by volume and the degree of interest, by its definition.
             for (const bool inside : {true, false}) {
                 double w = 0, wx = 0, wy = 0, wxx = 0, wyy = 0, wxy = 0;
-                const auto weight = [&](std::size_t i) { return inside ? doi(i) : 1 - doi(i); };
+                const auto weight = [&](std::size_t i) { return cell[i] * (inside ? doi(i) : 1 - doi(i)); };
                 for (std::size_t i = 0; i < count; ++i) {
                     if (!both(i)) continue;
                     w += weight(i);
@@ -165,10 +174,10 @@ TEST(Statistics, AgreesWithBruteForce) {
             }
             for (std::size_t i = 0; i < count; ++i) {
                 if (!both(i)) continue;
-                const double x = double(value(joint.x, i)) - mx / n, y = double(value(joint.y, i)) - my / n;
-                xx += x * x;
-                yy += y * y;
-                xy += x * y;
+                const double x = double(value(joint.x, i)) - mx / volume, y = double(value(joint.y, i)) - my / volume;
+                xx += cell[i] * x * x;
+                yy += cell[i] * y * y;
+                xy += cell[i] * x * y;
             }
             EXPECT_EQ(double(joint.samples), n);
             EXPECT_EQ(joint.count, bins);

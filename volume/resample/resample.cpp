@@ -1,5 +1,6 @@
 #include "volume/resample/resample.h"
 
+#include "volume/resample/even_grid.h"
 #include "volume/resample/resample_bcc.h"
 #include "volume/resample/resample_cc.h"
 #include "volume/resample/slice_filter.h"
@@ -29,8 +30,9 @@ Field fromCc(const Field& source, const Lattice& target, const ResampleOptions& 
 
 } // namespace
 
-Field resample(const Field& source, const Lattice& target, const ResampleOptions& options, const Progress& progress) {
-    checkOrder(options);
+Field resample(const Field& source, const Lattice& target, const ResampleOptions& asked, const Progress& progress) {
+    checkOrder(asked);
+    const ResampleOptions options = optionsBetween(source.lattice.axes, target.axes, asked);
     if (options.sharpen > 0) {
         ResampleOptions plain = options;
         plain.sharpen = 0;

@@ -1,5 +1,6 @@
 #include "volume/resample/resample_slices.h"
 
+#include "volume/resample/even_grid.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/resample_cc.h"
 #include "volume/resample/sharpen.h"
@@ -122,10 +123,11 @@ SlicedFrame sharpened(const SlicedFrame& source, double amount, int step, const 
     return out;
 }
 
-SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const ResampleOptions& options,
+SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const ResampleOptions& asked,
                       const SliceMemory& memory, const Progress& progress) {
-    if (source.whole) return inMemory(resample(*source.whole, target, options, progress));
-    checkOrder(options);
+    if (source.whole) return inMemory(resample(*source.whole, target, asked, progress));
+    checkOrder(asked);
+    const ResampleOptions options = optionsBetween(source.lattice.axes, target.axes, asked);
     if (options.sharpen > 0) {
         ResampleOptions plain = options;
         plain.sharpen = 0;

@@ -35,10 +35,12 @@ struct AxisTaps {
     std::vector<Tap> x, y, z;
 };
 
-/// Cells, in the source's even sublattice, of sample `i` of a target sublattice.
+/// Cells, in the source's even sublattice, of sample `i` of a target sublattice: on the sheet that both axes share, or
+/// where the axes differ, by its place in space.
 double sourceCells(const Lattice& source, const Lattice& target, int sublattice, int axis, int i);
 
-/// The taps of every sample of a target sublattice in a CC source.
+/// The taps of every sample of a target sublattice in a CC source. Along an axis that differs from that of the source
+/// they are of places in space: linear between the samples around, or of the sample whose cell a place lies in.
 AxisTaps tapsFor(const Lattice& source, const Lattice& target, int sublattice, const ResampleOptions& options);
 
 } // namespace tessera::volume
