@@ -131,7 +131,7 @@ TEST(UnevenContours, OfALinearFieldLieWhereItsLevelIs) {
         PlaneValues plane{{lattice.size.x, lattice.size.z}, {}, {}};
         for (const double up : z)
             for (const double right : x) plane.values.push_back(linearAt({right, 0, up}));
-        const double level = 321;
+        const double level = 371;
         std::size_t points = 0;
         for (const ContourLine& line : contourLines(plane, std::array{level}))
             for (const glm::dvec2 at : line.points) {
@@ -154,6 +154,7 @@ TEST(UnevenStatistics, AreOfVolume) {
                      return p.z < 1.025e-3 ? 1 : p.z < 1.035e-3 ? 2 : 3;
                  })});
             data.info.bounds = box;
+            data.info.parameters[0].ranges = {{0, 8}};
             data.info.parameters[1].ranges = {{0, 500}};
             data.info.parameters[2].categorical = true;
             const auto source = makeMemorySource(data, {.lattice = kind, .brickSize = 8});

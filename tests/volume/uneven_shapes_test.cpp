@@ -7,6 +7,7 @@
 #include "volume/resample/hyperplane.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/resample_slices.h"
+#include "volume/resample/resample_taps.h"
 #include "volume/sources/time_axis.h"
 
 #include <cmath>

@@ -1,6 +1,5 @@
 #include "volume/resample/resample.h"
 
-#include "volume/resample/even_grid.h"
 #include "volume/resample/resample_bcc.h"
 #include "volume/resample/resample_cc.h"
 #include "volume/resample/slice_filter.h"

@@ -21,7 +21,7 @@ namespace tessera::volume {
 /// step over it, its sample nearer to the gap is absent too.
 ///
 /// Between lattices on one sheet (volume/field/axis_map.h) all of this is in cells of the sheet. Where their axes
-/// differ, samples are taken at their places in space and only linearly (volume/resample/even_grid.h): exact for linear
+/// differ, samples are taken at their places in space and only linearly (optionsBetween): exact for linear
 /// functions of space between the samples of CC.
 ///
 /// Results stay within the range of the source's present samples of their part, integer types round; a same-lattice
