@@ -195,13 +195,20 @@ TEST(Statistics, AgreesWithBruteForce) {
 
 TEST(Statistics, TheSameOnAnyNumberOfThreads) {
     const auto source = makeMemorySource(threeChannels(ccLattice({40, 33, 29})), {LatticeKind::BCC, 8, 1 << 30});
-    const Statistics many = computeStatistics(*source, fullQuery());
+    StatisticsQuery query = fullQuery();
+    query.binsByVolume = true;
+    const Statistics many = computeStatistics(*source, query);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const Statistics single = computeStatistics(*source, fullQuery());
+    const Statistics single = computeStatistics(*source, query);
     for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_EQ(many.channels[c].histogram.focus, single.channels[c].histogram.focus);
         EXPECT_EQ(many.channels[c].inside.mean, single.channels[c].inside.mean);
+        EXPECT_EQ(many.channels[c].histogram.focusVolume, single.channels[c].histogram.focusVolume);
         EXPECT_EQ(many.joint[c].count, single.joint[c].count);
+        EXPECT_EQ(many.joint[c].volume, single.joint[c].volume);
+        ASSERT_EQ(many.joint[c].mean.size(), single.joint[c].mean.size());
+        for (std::size_t b = 0; b < many.joint[c].mean.size(); ++b)
+            EXPECT_TRUE(many.joint[c].mean[b] == single.joint[c].mean[b] || std::isnan(single.joint[c].mean[b]));
         EXPECT_EQ(many.joint[c].correlation, single.joint[c].correlation);
     }
 }

@@ -100,6 +100,39 @@ TEST(UnevenProbe, ALinearFieldIsExactEverywhere) {
     }
 }
 
+// Cells along one axis, points along another.
+TEST(UnevenProbe, AxesAreEachOfTheirKind) {
+    const Lattice cells = layeredLattice(Of::Cells), points = layeredLattice(Of::Points);
+    const Lattice lattice = withAxes(cells, {{points.axes.of[0], nullptr, cells.axes.of[2]}});
+    const auto source = unevenSource({linearField(lattice)});
+    for (const glm::dvec3 place : placesWithin(lattice, 2000))
+        ASSERT_NEAR(*probeChannel(*source, 0, place, 0).interpolated, linearAt(place), 1e-4);
+    StatisticsQuery query;
+    query.channels = {0};
+    const Box box = unevenBox(lattice);
+    const double volume = (box.hi.x - box.lo.x) * (box.hi.y - box.lo.y) * (box.hi.z - box.lo.z);
+    EXPECT_NEAR(computeStatistics(*source, query).channels[0].all.volume, volume, 1e-12 * volume);
+    // Samples in the middle of cells: midpoints give the integral of a linear field in z and y; points in x do, too.
+    const glm::dvec3 middle = 0.5 * (box.lo + box.hi);
+    EXPECT_NEAR(computeStatistics(*source, query).channels[0].all.mean, linearAt(middle), 1e-3);
+}
+
+// Coarser levels of a source lie on the same sheet: values between their samples are linear in space.
+TEST(UnevenProbe, CoarseSamplesLieAtTheirPlacesInSpace) {
+    const Lattice fine = layeredLattice(Of::Cells);
+    Lattice coarse = fine;
+    coarse.size = (fine.size + 1) / 2;
+    coarse.spacing = 2.0 * fine.spacing;
+    coarse.origin = fine.sheetOfCells(glm::dvec3(0.5));
+    for (int z = 0; z < coarse.size.z; ++z) EXPECT_NEAR(coarse.between(coarse.position({1, 1, z})).z, z, 1e-9);
+    for (const glm::dvec3 place : placesWithin(coarse, 500)) {
+        const glm::dvec3 at = coarse.between(place);
+        const int z = std::clamp(int(at.z), 0, coarse.size.z - 2);
+        const double a = coarse.position({0, 0, z}).z, b = coarse.position({0, 0, z + 1}).z;
+        EXPECT_NEAR(a + (at.z - z) * (b - a), place.z, 1e-12);
+    }
+}
+
 TEST(UnevenProbe, PartsGoOnInAStraightLineBeyondTheirBorder) {
     for (const Of of : kBoth) {
         const Lattice lattice = layeredLattice(of);

@@ -8,6 +8,7 @@
 #include "volume/resample/resample.h"
 #include "volume/resample/resample_slices.h"
 #include "volume/resample/resample_taps.h"
+#include "volume/sources/even_source.h"
 #include "volume/sources/time_axis.h"
 
 #include <cmath>
@@ -276,6 +277,30 @@ TEST(UnevenResample, ADataSetOnAnEvenGridKeepsItsBoxAndRegions) {
         ASSERT_NEAR(made.value(grid.index({30, 3, z})), valueOf(p), 2e-4) << z;
     }
     EXPECT_EQ(onEvenGrid(even).info.notes.size(), 1u);
+}
+
+TEST(UnevenResample, ASourceOnAnEvenGridIsWhatItsDataSetIs) {
+    const Lattice lattice = layeredLattice(Of::Cells);
+    Dataset data = test::unevenDataset(
+        {test::sampled<float>(lattice, [](glm::dvec3 p) { return p.z < 1.035e-3 ? tilted(p) : 900 - 3 * tilted(p); }),
+         test::sampled<std::uint8_t>(lattice, [](glm::dvec3 p) { return p.z < 1.035e-3 ? 1 : 3; })});
+    data.info.parameters[0].parts = {"p1", {{1}, {3}}};
+    data.info.parameters[1].categorical = true;
+    data.read = [read = data.read](int parameter, int component, int time) {
+        Field field = read(parameter, component, time);
+        if (parameter == 0) test::removeWhere(field, [](glm::dvec3 p) { return p.x > 2e-3 && p.z > 2e-3; });
+        return field;
+    };
+    const Dataset a = onEvenGrid(data), b = onEvenGrid(makeMemorySource(data, {.brickSize = 8}));
+    EXPECT_EQ(a.info, b.info);
+    for (const int parameter : {0, 1}) {
+        const Field one = a.read(parameter, 0, 0), other = b.read(parameter, 0, 0);
+        EXPECT_EQ(one.samples, other.samples);
+        EXPECT_EQ(one.mask != nullptr, other.mask != nullptr);
+        if (one.mask) {
+            EXPECT_EQ(*one.mask, *other.mask);
+        }
+    }
 }
 
 TEST(UnevenResample, OnTheSheetBccIsWhatItIsOfEvenAxes) {

@@ -203,17 +203,18 @@ private:
     }
 
     /// A volume as an integer, so that sums do not depend on the order; what is there counts.
-    std::uint64_t units(double volume, int bits) const {
-        return volume > 0 ? std::uint64_t(std::max(std::ldexp(volume / box_, bits), 1.0) + 0.5) : 0;
+    std::uint64_t units(double volume, double unit) const {
+        return volume > 0 ? std::uint64_t(std::max(volume / unit, 1.0) + 0.5) : 0;
     }
 
     /// Adds the volume of samples to the bins that `binOf(i)` says.
     void addVolumes(Bins& bins, const std::vector<double>& cell, const std::vector<float>& inside,
                     const Stretch& stretch, const auto& binOf) const {
+        const double unit = std::ldexp(box_, -kVolumeBits);
         for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
             const std::size_t bin = binOf(i);
-            bins.volume[bin] += units(cell[i], kVolumeBits);
-            bins.focusVolume[bin] += units(inside.empty() ? cell[i] : double(inside[i]) * cell[i], kVolumeBits);
+            bins.volume[bin] += units(cell[i], unit);
+            bins.focusVolume[bin] += units(inside.empty() ? cell[i] : double(inside[i]) * cell[i], unit);
         }
     }
 
@@ -241,10 +242,11 @@ private:
     void addThird(Bins& bins, const Column& x, const Column& y, const Column& third, const Stretch& stretch) const {
         const Range& range = ranges_[std::size_t(query_.meanOf)];
         const double scale = range.hi > range.lo ? 65535 / (range.hi - range.lo) : 0;
+        const double unit = std::ldexp(box_, -kThirdBits);
         for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
             if (third.present[i] == 0) continue;
             const std::size_t at = y.bin[i] * stride() + x.bin[i];
-            const std::uint64_t weight = units(stretch.weight[i], kThirdBits);
+            const std::uint64_t weight = units(stretch.weight[i], unit);
             bins.third[at] +=
                 weight * std::uint64_t(std::clamp((double(third.value[i]) - range.lo) * scale, 0.0, 65535.0) + 0.5);
             bins.thirdVolume[at] += weight;
