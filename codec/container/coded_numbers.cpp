@@ -134,7 +134,8 @@ void deriveWhole(NumbersAtTime& time) {
     LabelNumbers& whole = time.labels[0];
     const LabelNumbers& regions = time.labels[1];
     for (std::size_t c = 0; c < whole.channels.size(); ++c)
-        whole.statistics.all[c] = volume::wholeSummary(regions.statistics, c, whole.statistics.all[c]);
+        whole.statistics.all[c] =
+            volume::wholeSummary(regions.statistics, c, whole.statistics.all[c], regions.byVolume);
     for (std::size_t k = 0; k < whole.carried.size(); ++k)
         whole.balances[k] = {volume::wholeBalance(regions.balances[k])};
 }
@@ -192,7 +193,7 @@ void addBlocks(std::span<const NumbersAtTime> times, std::string& shape, std::ve
 bool alike(const NumbersAtTime& a, const NumbersAtTime& b) {
     return std::ranges::equal(a.labels, b.labels, [](const LabelNumbers& own, const LabelNumbers& other) {
         return own.label == other.label && own.velocity == other.velocity && own.channels == other.channels &&
-               own.carried == other.carried;
+               own.carried == other.carried && own.byVolume == other.byVolume;
     });
 }
 

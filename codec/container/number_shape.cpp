@@ -25,6 +25,7 @@ json toJson(const NumberShape& shape) {
     if (!shape.label.empty()) out["regions"] = shape.regions;
     if (!shape.borders.empty()) out["borders"] = shape.borders;
     if (shape.derived) out["derived"] = true;
+    if (shape.byVolume) out["byVolume"] = true;
     return out;
 }
 
@@ -42,6 +43,7 @@ std::vector<NumberShape> shapesOf(const std::string& text) {
             }
             if (!shape.label.empty()) shape.regions = each.at("regions").get<std::vector<int>>();
             if (each.contains("derived")) shape.derived = each.at("derived").get<bool>();
+            if (each.contains("byVolume")) shape.byVolume = each.at("byVolume").get<bool>();
             if (each.contains("borders")) shape.borders = each.at("borders").get<std::vector<std::pair<int, int>>>();
         }
     } catch (const json::exception&) {
@@ -74,6 +76,7 @@ NumberShape shapeOf(std::span<const NumbersAtTime> times, std::size_t place) {
                 for (const volume::BorderCrossing& border : balance.borders)
                     borders.emplace(balance.region, border.region);
     }
+    shape.byVolume = first.byVolume;
     shape.regions.assign(regions.begin(), regions.end());
     shape.borders.assign(borders.begin(), borders.end());
     shape.derived = place == 0 && std::ranges::all_of(times, [](const NumbersAtTime& time) {
@@ -105,7 +108,7 @@ void fill(RegionBalance& wide, const RegionBalance& from) {
 } // namespace
 
 LabelNumbers emptyNumbers(const NumberShape& shape) {
-    LabelNumbers out{shape.label, shape.velocity, shape.channels, shape.carried, {}, {}};
+    LabelNumbers out{shape.label, shape.velocity, shape.channels, shape.carried, {}, {}, shape.byVolume};
     volume::RegionStatistics& statistics = out.statistics;
     statistics.regions = shape.regions;
     statistics.samples.resize(shape.regions.size());

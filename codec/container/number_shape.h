@@ -18,6 +18,7 @@ struct NumberShape {
     std::vector<int> regions;
     std::vector<std::pair<int, int>> borders; ///< label values
     bool derived = false;                     ///< of everything: from the regions of the next label, which cover it
+    bool byVolume = false;                    ///< LabelNumbers::byVolume
 };
 
 /// Throws Error with this reason.

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// A small data set of which every number follows from a formula of place and time, so that whatever the program says
@@ -84,7 +85,15 @@ inline Range rangeOf(std::string_view name) {
     return range;
 }
 
-/// Plain statistics of samples, none weighted.
+/// How much of the cell of a sample lies in the box: half of it at a face, along each axis.
+inline double cellShare(Place at) {
+    const int index[3] = {at.x, at.y, at.z};
+    double share = 1;
+    for (int axis = 0; axis < 3; ++axis) share *= index[axis] == 0 || index[axis] == kSize[axis] - 1 ? 0.5 : 1;
+    return share;
+}
+
+/// Plain statistics: mean and deviation by volume, the rest of samples.
 struct Sum {
     double samples = 0, mean = 0, least = 1e300, most = -1e300, deviation = 0;
 };
@@ -92,17 +101,20 @@ struct Sum {
 /// Of a channel over the samples that `counts` says.
 template <class Counts> Sum summed(const std::string& channel, double time, Counts&& counts) {
     Sum sum;
-    std::vector<double> values;
+    std::vector<std::pair<double, double>> values; // and the share of the cell
+    double volume = 0;
     forEachPlace([&](Place at) {
         const auto v = valueAt(channel, at, time);
-        if (v && counts(at)) values.push_back(*v);
+        if (!v || !counts(at)) return;
+        values.emplace_back(*v, cellShare(at));
+        volume += cellShare(at);
     });
-    for (const double v : values) {
+    for (const auto& [v, share] : values) {
         ++sum.samples;
-        sum.mean += v / double(values.size());
+        sum.mean += share * v / volume;
         sum.least = std::min(sum.least, v), sum.most = std::max(sum.most, v);
     }
-    for (const double v : values) sum.deviation += (v - sum.mean) * (v - sum.mean) / double(values.size());
+    for (const auto& [v, share] : values) sum.deviation += share * (v - sum.mean) * (v - sum.mean) / volume;
     sum.deviation = std::sqrt(sum.deviation);
     return sum;
 }

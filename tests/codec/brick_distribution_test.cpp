@@ -245,7 +245,8 @@ TEST(BrickDistribution, AHistogramOfAllNeedsNoSamples) {
         EXPECT_EQ(a.samples, b.samples);
         EXPECT_EQ(a.min, b.min);
         EXPECT_EQ(a.max, b.max);
-        EXPECT_NEAR(a.mean, b.mean, 1e-5);
+        // Cells at the faces are halved: within a brick the noted mean is one of samples.
+        EXPECT_NEAR(a.mean, b.mean, 0.01 * (b.max - b.min));
         EXPECT_NEAR(a.deviation, b.deviation, 0.03 * b.deviation);
         double off = 0;
         for (std::size_t bin = 0; bin < 20; ++bin)

@@ -1,7 +1,7 @@
 // 32-bit integers that 32-bit floats do not hold: numbers are of the integers, in memory and from an archive.
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
-#include "tests/volume/fields.h"
+#include "tests/volume/cell_data.h"
 #include "volume/analysis/region_statistics.h"
 #include "volume/analysis/statistics.h"
 #include "volume/bricks/brick_cache.h"
@@ -53,20 +53,26 @@ Dataset integers(bool holes) {
 }
 
 struct Sum {
-    double n = 0, sum = 0, squares = 0;
-    void add(double value) { n += 1, sum += value - kBase, squares += (value - kBase) * (value - kBase); }
-    double mean() const { return kBase + sum / n; }
-    double deviation() const { return std::sqrt(squares / n - sum / n * sum / n); }
+    double n = 0, volume = 0, sum = 0, squares = 0;
+    void add(double value, double cell) {
+        const double apart = value - kBase;
+        n += 1, volume += cell, sum += cell * apart, squares += cell * apart * apart;
+    }
+    double mean() const { return kBase + sum / volume; }
+    double deviation() const { return std::sqrt(squares / volume - sum / volume * sum / volume); }
 };
 
 void expectExact(const std::shared_ptr<const BrickSource>& source, const Dataset& data, const char* what) {
     Sum all, odd;
     const Field field = data.read(0, 0, 0);
-    for (std::size_t i = 0; i < field.count(); ++i)
-        if (field.present(i)) {
-            all.add(field.value(i));
-            if (i % 2 == 1) odd.add(field.value(i));
-        }
+    volume::test::forAll(field.lattice, [&](glm::ivec3 at, std::size_t i) {
+        if (!field.present(i)) return;
+        double cell = 1;
+        for (int axis = 0; axis < 3; ++axis)
+            cell *= volume::test::cellLength(field.lattice, data.info.bounds, at, axis);
+        all.add(field.value(i), cell);
+        if (i % 2 == 1) odd.add(field.value(i), cell);
+    });
     StatisticsQuery query{.channels = {0, 1},
                           .pairs = {},
                           .time = 0,

@@ -25,9 +25,9 @@ namespace fs = std::filesystem;
 
 /// Sums over the samples of one parameter, those `inside` says.
 struct Sums {
-    double count = 0, all = 0, sum = 0, squares = 0, volume = 0, integral = 0;
+    double count = 0, all = 0, squares = 0, volume = 0, integral = 0;
     double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
-    double mean() const { return sum / count; }
+    double mean() const { return integral / volume; }
 };
 
 Sums sumsOf(const Dataset& dataset, int parameter, int time, const std::function<bool(std::size_t)>& inside) {
@@ -50,8 +50,7 @@ Sums sumsOf(const Dataset& dataset, int parameter, int time, const std::function
                 ++sums.count;
                 sums.volume += cell;
                 sums.integral += cell * value;
-                sums.sum += value;
-                sums.squares += value * value;
+                sums.squares += cell * value * value;
                 sums.least = std::min(sums.least, value);
                 sums.most = std::max(sums.most, value);
             }
@@ -90,7 +89,7 @@ void expectStatistics(const Dataset& dataset, const std::string& parameter, cons
             EXPECT_NEAR(curves.y[0].values[t], sums.mean(), 1e-5 * spread + 1e-9);
             EXPECT_EQ(curves.y[1].values[t], sums.least);
             EXPECT_EQ(curves.y[2].values[t], sums.most);
-            EXPECT_NEAR(curves.y[3].values[t], std::sqrt(sums.squares / sums.count - sums.mean() * sums.mean()),
+            EXPECT_NEAR(curves.y[3].values[t], std::sqrt(sums.squares / sums.volume - sums.mean() * sums.mean()),
                         1e-3 * spread);
             EXPECT_NEAR(curves.y[4].values[t], sums.count / sums.all, 1e-3);
             EXPECT_NEAR(curves.y[5].values[t], sums.volume, 2e-3 * sums.volume);

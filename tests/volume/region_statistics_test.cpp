@@ -40,8 +40,8 @@ TEST(RegionStatistics, AgreeWithBruteForce) {
                     double cell = lattice.kind == LatticeKind::BCC ? 0.5 : 1;
                     for (int axis = 0; axis < 3; ++axis) cell *= test::cellLength(lattice, data.info.bounds, at, axis);
                     n += 1;
-                    sum += v;
-                    squares += v * v;
+                    sum += cell * v;
+                    squares += cell * v * v;
                     volume += cell;
                     lo = std::min(lo, v);
                     hi = std::max(hi, v);
@@ -54,8 +54,10 @@ TEST(RegionStatistics, AgreeWithBruteForce) {
                     continue;
                 }
                 EXPECT_NEAR(summary.volume, volume, 1e-9 * volume);
-                EXPECT_NEAR(summary.mean, sum / n, 1e-9);
-                EXPECT_NEAR(summary.deviation, std::sqrt(squares / n - sum / n * sum / n), 1e-7);
+                const double mean = sum / volume;
+                EXPECT_NEAR(summary.mean, mean, 1e-9);
+                EXPECT_NEAR(summary.integral, sum, 1e-9 * volume);
+                EXPECT_NEAR(summary.deviation, std::sqrt(squares / volume - mean * mean), 1e-7);
                 EXPECT_EQ(summary.min, lo);
                 EXPECT_EQ(summary.max, hi);
             }

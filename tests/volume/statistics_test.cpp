@@ -1,6 +1,6 @@
 #include "volume/analysis/statistics.h"
 
-#include "tests/volume/fields.h"
+#include "tests/volume/cell_data.h"
 #include "volume/sources/memory_source.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 using test::ccLattice;
 using test::sampled;
 
-constexpr int kSummaryBins = 16;
+constexpr int kBins = 16;
 
 /// Three parameters with masks of their own, the third a noisy linear function of the first.
 Dataset threeChannels(const Lattice& lattice) {
@@ -41,7 +41,7 @@ StatisticsQuery fullQuery() {
     StatisticsQuery query;
     query.channels = {0, 1, 2};
     query.pairs = allPairs(3);
-    query.bins = kSummaryBins;
+    query.bins = kBins;
     query.meanOf = 1;
     query.doi = [](std::span<const float> v, glm::dvec3) { return doiOf(v); };
     return query;
@@ -49,7 +49,7 @@ StatisticsQuery fullQuery() {
 
 int binOf(const Range& range, double value) {
     if (value < range.lo || value > range.hi) return -1;
-    return std::min(kSummaryBins - 1, int((value - range.lo) / (range.hi - range.lo) * kSummaryBins));
+    return std::min(kBins - 1, int((value - range.lo) / (range.hi - range.lo) * kBins));
 }
 
 TEST(Statistics, AgreesWithBruteForce) {
@@ -71,18 +71,25 @@ TEST(Statistics, AgreesWithBruteForce) {
         };
         const auto doi = [&](std::size_t i) { return doiOf(std::array{value(0, i), value(1, i), value(2, i)}); };
         const std::size_t count = fields[0].count();
+        std::vector<double> cell; // volume of each sample's
+        test::forAll(fields[0].lattice, [&](glm::ivec3 at, std::size_t) {
+            cell.push_back(0.5);
+            for (int axis = 0; axis < 3; ++axis)
+                cell.back() *= test::cellLength(fields[0].lattice, dataset.info.bounds, at, axis);
+        });
         for (int c = 0; c < 3; ++c) {
             const ChannelStatistics& channel = result.channels[std::size_t(c)];
-            std::vector<std::uint64_t> bins(kSummaryBins);
-            std::vector<double> focus(kSummaryBins);
+            std::vector<std::uint64_t> bins(kBins);
+            std::vector<double> focus(kBins);
             for (const bool inside : {true, false}) {
-                double n = 0, sum = 0, squares = 0, lo = INFINITY, hi = -INFINITY;
+                double n = 0, volume = 0, sum = 0, squares = 0, lo = INFINITY, hi = -INFINITY;
                 for (std::size_t i = 0; i < count; ++i) {
                     const double v = double(value(c, i));
                     if (std::isnan(v)) continue;
                     const double weight = inside ? doi(i) : 1 - doi(i);
                     n += weight;
-                    sum += weight * v;
+                    volume += weight * cell[i];
+                    sum += weight * cell[i] * v;
                     if ((doi(i) >= 0.5) != inside) continue;
                     lo = std::min(lo, v);
                     hi = std::max(hi, v);
@@ -93,7 +100,8 @@ TEST(Statistics, AgreesWithBruteForce) {
                 }
                 for (std::size_t i = 0; i < count; ++i) {
                     const double v = double(value(c, i));
-                    if (!std::isnan(v)) squares += (inside ? doi(i) : 1 - doi(i)) * (v - sum / n) * (v - sum / n);
+                    const double apart = v - sum / volume;
+                    if (!std::isnan(v)) squares += (inside ? doi(i) : 1 - doi(i)) * cell[i] * apart * apart;
                 }
                 const Summary& summary = inside ? channel.inside : channel.outside;
                 EXPECT_NEAR(summary.samples, n, 1e-6 * (1 + n));
@@ -101,8 +109,8 @@ TEST(Statistics, AgreesWithBruteForce) {
                     EXPECT_TRUE(std::isnan(summary.mean));
                     continue;
                 }
-                EXPECT_NEAR(summary.mean, sum / n, 1e-7);
-                EXPECT_NEAR(summary.deviation, std::sqrt(squares / n), 1e-5);
+                EXPECT_NEAR(summary.mean, sum / volume, 1e-7);
+                EXPECT_NEAR(summary.deviation, std::sqrt(squares / volume), 1e-5);
                 if (lo > hi) continue; // none of weight 1/2
                 EXPECT_EQ(summary.min, lo);
                 EXPECT_EQ(summary.max, hi);
@@ -110,14 +118,14 @@ TEST(Statistics, AgreesWithBruteForce) {
             EXPECT_NEAR(channel.all.samples, channel.inside.samples + channel.outside.samples,
                         1e-6 * channel.all.samples);
             EXPECT_EQ(channel.histogram.count, bins);
-            for (std::size_t b = 0; b < kSummaryBins; ++b)
+            for (std::size_t b = 0; b < kBins; ++b)
                 EXPECT_NEAR(channel.histogram.focus[b], focus[b], 6e-4 * double(1 + bins[b]));
         }
         for (const JointHistogram& joint : result.joint) {
-            std::vector<std::uint64_t> bins(kSummaryBins * kSummaryBins);
-            std::vector<double> focus(kSummaryBins * kSummaryBins);
-            std::vector<double> third(kSummaryBins * kSummaryBins), thirdCount(kSummaryBins * kSummaryBins);
-            double n = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
+            std::vector<std::uint64_t> bins(kBins * kBins);
+            std::vector<double> focus(kBins * kBins);
+            std::vector<double> third(kBins * kBins), thirdVolume(kBins * kBins);
+            double n = 0, volume = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
             const auto both = [&](std::size_t i) {
                 return !std::isnan(value(joint.x, i)) && !std::isnan(value(joint.y, i));
             };
@@ -125,26 +133,27 @@ TEST(Statistics, AgreesWithBruteForce) {
                 if (!both(i)) continue;
                 const double x = double(value(joint.x, i)), y = double(value(joint.y, i));
                 ++n;
-                mx += x;
-                my += y;
+                volume += cell[i];
+                mx += cell[i] * x;
+                my += cell[i] * y;
                 const int bx = binOf(joint.xRange, x), by = binOf(joint.yRange, y);
                 if (bx < 0 || by < 0) continue;
-                ++bins[std::size_t(by * kSummaryBins + bx)];
-                focus[std::size_t(by * kSummaryBins + bx)] += doi(i);
+                ++bins[std::size_t(by * kBins + bx)];
+                focus[std::size_t(by * kBins + bx)] += doi(i);
                 if (std::isnan(value(1, i))) continue;
-                third[std::size_t(by * kSummaryBins + bx)] += std::clamp(double(value(1, i)), -20.0, 100.0);
-                ++thirdCount[std::size_t(by * kSummaryBins + bx)];
+                third[std::size_t(by * kBins + bx)] += cell[i] * std::clamp(double(value(1, i)), -20.0, 100.0);
+                thirdVolume[std::size_t(by * kBins + bx)] += cell[i];
             }
             for (std::size_t b = 0; b < bins.size(); ++b) {
-                EXPECT_EQ(std::isnan(joint.mean[b]), thirdCount[b] == 0);
-                if (thirdCount[b] > 0) {
-                    EXPECT_NEAR(joint.mean[b], third[b] / thirdCount[b], 120.0 / 65535);
+                EXPECT_EQ(std::isnan(joint.mean[b]), thirdVolume[b] == 0);
+                if (thirdVolume[b] > 0) {
+                    EXPECT_NEAR(joint.mean[b], third[b] / thirdVolume[b], 120.0 / 65535);
                 }
             }
-            // Correlation weighted by the degree of interest, by its definition.
+            // Correlation weighted by volume and the degree of interest, by its definition.
             for (const bool inside : {true, false}) {
                 double w = 0, wx = 0, wy = 0, wxx = 0, wyy = 0, wxy = 0;
-                const auto weight = [&](std::size_t i) { return inside ? doi(i) : 1 - doi(i); };
+                const auto weight = [&](std::size_t i) { return cell[i] * (inside ? doi(i) : 1 - doi(i)); };
                 for (std::size_t i = 0; i < count; ++i) {
                     if (!both(i)) continue;
                     w += weight(i);
@@ -165,10 +174,10 @@ TEST(Statistics, AgreesWithBruteForce) {
             }
             for (std::size_t i = 0; i < count; ++i) {
                 if (!both(i)) continue;
-                const double x = double(value(joint.x, i)) - mx / n, y = double(value(joint.y, i)) - my / n;
-                xx += x * x;
-                yy += y * y;
-                xy += x * y;
+                const double x = double(value(joint.x, i)) - mx / volume, y = double(value(joint.y, i)) - my / volume;
+                xx += cell[i] * x * x;
+                yy += cell[i] * y * y;
+                xy += cell[i] * x * y;
             }
             EXPECT_EQ(double(joint.samples), n);
             EXPECT_EQ(joint.count, bins);
@@ -186,13 +195,20 @@ TEST(Statistics, AgreesWithBruteForce) {
 
 TEST(Statistics, TheSameOnAnyNumberOfThreads) {
     const auto source = makeMemorySource(threeChannels(ccLattice({40, 33, 29})), {LatticeKind::BCC, 8, 1 << 30});
-    const Statistics many = computeStatistics(*source, fullQuery());
+    StatisticsQuery query = fullQuery();
+    query.binsByVolume = true;
+    const Statistics many = computeStatistics(*source, query);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const Statistics single = computeStatistics(*source, fullQuery());
+    const Statistics single = computeStatistics(*source, query);
     for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_EQ(many.channels[c].histogram.focus, single.channels[c].histogram.focus);
         EXPECT_EQ(many.channels[c].inside.mean, single.channels[c].inside.mean);
+        EXPECT_EQ(many.channels[c].histogram.focusVolume, single.channels[c].histogram.focusVolume);
         EXPECT_EQ(many.joint[c].count, single.joint[c].count);
+        EXPECT_EQ(many.joint[c].volume, single.joint[c].volume);
+        ASSERT_EQ(many.joint[c].mean.size(), single.joint[c].mean.size());
+        for (std::size_t b = 0; b < many.joint[c].mean.size(); ++b)
+            EXPECT_TRUE(many.joint[c].mean[b] == single.joint[c].mean[b] || std::isnan(single.joint[c].mean[b]));
         EXPECT_EQ(many.joint[c].correlation, single.joint[c].correlation);
     }
 }

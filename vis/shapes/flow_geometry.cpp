@@ -350,9 +350,8 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
     auto out = std::make_shared<Geometry>();
     if (followsFlow(layer.kind)) {
         LineSet lines{.positions = {}, .scalars = {}, .ends = {}, .origin = origin};
-        const volume::StreamlineSettings settings{.cell = glm::abs(data->grid.x.lattice.spacing),
-                                                  .longest = double(layer.length) * longest,
-                                                  .slowest = data->slowest};
+        const volume::StreamlineSettings settings{
+            .lattice = data->grid.x.lattice, .longest = double(layer.length) * longest, .slowest = data->slowest};
         if (layer.kind == FlowKind::Pathlines) {
             volume::StreamlineSettings particles = settings;
             particles.slowest *= double(layer.speed);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <glm/vec2.hpp>
 #include <span>
 #include <vector>
@@ -24,5 +27,13 @@ struct ContourLine {
 /// linearly, are the level. No line runs where a node of its cell is absent, nor between nodes of different parts. A
 /// saddle goes with the mean of its cell.
 std::vector<ContourLine> contourLines(const PlaneValues& plane, std::span<const double> levels);
+
+/// A coordinate in nodes as one in space, given the places of the nodes: linear between them, so that contours of
+/// uneven axes lie where values between samples are the level. `places` has at least one.
+inline double placeOfNode(std::span<const double> places, double node) {
+    if (places.size() < 2) return places.front();
+    const auto i = std::size_t(std::clamp(std::floor(node), 0.0, double(places.size() - 2)));
+    return places[i] + (node - double(i)) * (places[i + 1] - places[i]);
+}
 
 } // namespace tessera::volume

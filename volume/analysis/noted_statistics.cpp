@@ -73,7 +73,7 @@ private:
     std::vector<double> mass_;
 };
 
-/// Sums over bricks, relative to a shift so that close values keep their digits.
+/// Sums over bricks by their volume, relative to a shift so that close values keep their digits.
 struct NotedSums {
     double shift, samples = 0, volume = 0, sum = 0, squares = 0;
     double min = std::numeric_limits<double>::infinity(), max = -std::numeric_limits<double>::infinity();
@@ -83,7 +83,7 @@ struct NotedSums {
         const auto n = double(brick.samples);
         samples += n;
         volume += cells;
-        sum += n * (brick.mean - shift);
+        sum += cells * (brick.mean - shift);
         min = std::min(min, brick.range.lo);
         max = std::max(max, brick.range.hi);
         // About the brick's mean, assuming a uniform distribution within each of its bins.
@@ -95,12 +95,12 @@ struct NotedSums {
             second += brick.counts[b] * (centre * centre + width * width / 12);
         }
         const double variance = std::max(second / n - (moment / n) * (moment / n), 0.0);
-        squares += n * (variance + (brick.mean - shift) * (brick.mean - shift));
+        squares += cells * (variance + (brick.mean - shift) * (brick.mean - shift));
     }
     Summary summary() const {
         constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
         if (samples == 0) return {0, 0, kNothing, kNothing, kNothing, kNothing, kNothing};
-        const double mean = sum / samples, variance = std::max(squares / samples - mean * mean, 0.0);
+        const double mean = sum / volume, variance = std::max(squares / volume - mean * mean, 0.0);
         return {samples, volume, shift + mean, std::sqrt(variance), min, max, kNothing};
     }
 };
@@ -139,7 +139,7 @@ private:
 } // namespace
 
 std::optional<Statistics> notedStatistics(const BrickSource& source, const StatisticsQuery& query) {
-    if (query.doi || !query.pairs.empty()) return std::nullopt;
+    if (query.doi || !query.pairs.empty() || query.binsByVolume) return std::nullopt;
     const glm::ivec3 count = source.grid().count();
     const std::vector<Channel> channels = source.info().channels();
     const BrickVolumes volumes(source);

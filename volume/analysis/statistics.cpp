@@ -37,6 +37,11 @@ public:
         for (int s = 0; s < sublattices_; ++s)
             for (int axis = 0; axis < 3; ++axis)
                 lengths_[std::size_t(s)][std::size_t(axis)] = cellLengths(grid_, info.bounds, query.level, s, axis);
+        for (const auto& lengths : lengths_) {
+            double volume = 1.0 / sublattices_;
+            for (const std::vector<double>& along : lengths) volume *= std::accumulate(along.begin(), along.end(), 0.0);
+            box_ += volume;
+        }
     }
 
     Statistics run(const Progress& progress) {
@@ -67,8 +72,9 @@ private:
 
     BinSet emptyBins() const {
         BinSet set;
-        set.channels.assign(query_.channels.size(), Bins(stride()));
-        set.pairs.assign(query_.pairs.size(), Bins(stride() * stride(), query_.meanOf >= 0));
+        const bool byVolume = query_.binsByVolume;
+        set.channels.assign(query_.channels.size(), Bins(stride(), false, byVolume));
+        set.pairs.assign(query_.pairs.size(), Bins(stride() * stride(), query_.meanOf >= 0, byVolume));
         return set;
     }
 
@@ -162,6 +168,10 @@ private:
             std::vector<std::uint64_t>& histogram = bins.channels[c].packed;
             for (std::size_t i = 0; i < count; ++i)
                 if (columns[c].present[i] != 0) histogram[columns[c].bin[i]] += packed[i];
+            if (query_.binsByVolume)
+                addVolumes(bins.channels[c], cell, inside, {0, count, cell.data(), nullptr}, [&](std::size_t i) {
+                    return columns[c].present[i] != 0 ? std::size_t(columns[c].bin[i]) : std::size_t(query_.bins);
+                });
             if (!query_.doi && columns[c].whole && columns[c].rest.empty()) {
                 sums.inside[c].add(columns[c], shifts_[c], cell, volume);
                 continue;
@@ -175,16 +185,42 @@ private:
                                     weight == 0.5 ? std::nextafter(0.5, 0.0) : 1 - weight);
             }
         }
-        for (std::size_t begin = 0; begin < count; begin += kTogether)
-            addPairs(columns, packed, {begin, std::min(begin + kTogether, count), nullptr}, inside, bins, sums);
+        std::vector<double> focused(inside.size());
+        for (std::size_t i = 0; i < inside.size(); ++i) focused[i] = double(inside[i]) * cell[i];
+        for (std::size_t begin = 0; begin < count; begin += kTogether) {
+            const std::size_t end = std::min(begin + kTogether, count);
+            const Stretch all{begin, end, cell.data(), nullptr}, focus{begin, end, focused.data(), inside.data()};
+            addPairs(columns, packed, all, focus, bins, sums);
+            for (std::size_t p = 0; query_.binsByVolume && p < query_.pairs.size(); ++p) {
+                const Column &x = columns[std::size_t(query_.pairs[p][0])],
+                             &y = columns[std::size_t(query_.pairs[p][1])];
+                addVolumes(bins.pairs[p], cell, inside, all,
+                           [&](std::size_t i) { return y.bin[i] * stride() + x.bin[i]; });
+            }
+        }
         if (!query_.doi) sums.focusPairs = sums.pairs;
         return sums;
     }
 
+    /// A volume as an integer, so that sums do not depend on the order; what is there counts.
+    std::uint64_t units(double volume, double unit) const {
+        return volume > 0 ? std::uint64_t(std::max(volume / unit, 1.0) + 0.5) : 0;
+    }
+
+    /// Adds the volume of samples to the bins that `binOf(i)` says.
+    void addVolumes(Bins& bins, const std::vector<double>& cell, const std::vector<float>& inside,
+                    const Stretch& stretch, const auto& binOf) const {
+        const double unit = std::ldexp(box_, -kVolumeBits);
+        for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+            const std::size_t bin = binOf(i);
+            bins.volume[bin] += units(cell[i], unit);
+            bins.focusVolume[bin] += units(inside.empty() ? cell[i] : double(inside[i]) * cell[i], unit);
+        }
+    }
+
     /// Adds a run of samples to every pair while its values are in the processor's cache.
     void addPairs(const std::vector<Column>& columns, const std::vector<std::uint64_t>& packed, const Stretch& all,
-                  const std::vector<float>& inside, BinSet& bins, BrickSums& sums) const {
-        const Stretch focus{all.begin, all.end, inside.data()};
+                  const Stretch& focus, BinSet& bins, BrickSums& sums) const {
         std::vector<Moments> moments(columns.size()), focusMoments(columns.size());
         for (std::size_t c = 0; c < columns.size() && !query_.pairs.empty(); ++c) {
             if (!columns[c].whole) continue;
@@ -206,12 +242,14 @@ private:
     void addThird(Bins& bins, const Column& x, const Column& y, const Column& third, const Stretch& stretch) const {
         const Range& range = ranges_[std::size_t(query_.meanOf)];
         const double scale = range.hi > range.lo ? 65535 / (range.hi - range.lo) : 0;
+        const double unit = std::ldexp(box_, -kThirdBits);
         for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
             if (third.present[i] == 0) continue;
             const std::size_t at = y.bin[i] * stride() + x.bin[i];
+            const std::uint64_t weight = units(stretch.weight[i], unit);
             bins.third[at] +=
-                std::uint64_t(std::clamp((double(third.value[i]) - range.lo) * scale, 0.0, 65535.0) + 0.5);
-            ++bins.thirdCount[at];
+                weight * std::uint64_t(std::clamp((double(third.value[i]) - range.lo) * scale, 0.0, 65535.0) + 0.5);
+            bins.thirdVolume[at] += weight;
         }
     }
 
@@ -222,7 +260,7 @@ private:
         for (int row = 0; row < query_.bins; ++row)
             for (int bin = 0; bin < query_.bins; ++bin) {
                 const std::size_t at = std::size_t(row) * stride() + std::size_t(bin);
-                const double n = double(bins.thirdCount[at]);
+                const double n = double(bins.thirdVolume[at]);
                 means.push_back(n > 0 ? range.lo + double(bins.third[at]) / n / 65535 * (range.hi - range.lo) : kNan);
             }
         return means;
@@ -236,6 +274,16 @@ private:
                 count.push_back(bins.count[at]);
                 focus.push_back(double(bins.focus[at]) / (1 << kFocusBits));
             }
+    }
+
+    /// The volumes of bins, without the extra ones; empty if they are not asked for.
+    std::vector<double> volumes(const std::vector<std::uint64_t>& of, int rows) const {
+        std::vector<double> out;
+        for (int row = 0; row < rows && !of.empty(); ++row)
+            for (int bin = 0; bin < query_.bins; ++bin)
+                out.push_back(std::ldexp(double(of[std::size_t(row) * stride() + std::size_t(bin)]), -kVolumeBits) *
+                              box_);
+        return out;
     }
 
     Statistics result(const std::vector<BrickSums>& sums, const BinSet& bins) const {
@@ -252,6 +300,8 @@ private:
             ChannelStatistics channel;
             channel.histogram.range = ranges_[c];
             unpack(bins.channels[c], 1, channel.histogram.count, channel.histogram.focus);
+            channel.histogram.volume = volumes(bins.channels[c].volume, 1);
+            channel.histogram.focusVolume = volumes(bins.channels[c].focusVolume, 1);
             channel.all = all.summary(shifts_[c]);
             channel.all.samples =
                 std::round(channel.all.samples); // an integer, since each sample contributes d + (1 - d)
@@ -272,7 +322,9 @@ private:
             joint.yRange = ranges_[std::size_t(joint.y)];
             joint.bins = query_.bins;
             unpack(bins.pairs[p], query_.bins, joint.count, joint.focus);
-            joint.samples = std::uint64_t(all.n);
+            joint.volume = volumes(bins.pairs[p].volume, query_.bins);
+            joint.focusVolume = volumes(bins.pairs[p].focusVolume, query_.bins);
+            joint.samples = std::uint64_t(all.samples);
             joint.correlation = all.correlation();
             joint.focusCorrelation = focus.correlation();
             joint.outsideCorrelation = all.without(focus).correlation();
@@ -286,6 +338,7 @@ private:
     const StatisticsQuery& query_;
     const BrickGrid grid_;
     int sublattices_;
+    double box_ = 0; ///< volume of all cells
     std::vector<Range> ranges_;
     std::vector<double> shifts_;
     std::array<std::array<std::vector<double>, 3>, 2> lengths_; ///< [sublattice][axis][sample]: of the sample's cell

@@ -19,6 +19,7 @@ struct StatisticsQuery {
     int time = 0;
     int level = 0;             ///< of detail: ask for grid().levels - 1 first, then refine
     int meanOf = -1;           ///< position in `channels` whose mean every bin of the joint histograms gets
+    bool binsByVolume = false; ///< also the volume in every bin of histograms and joint histograms
     int bins = 128;            ///< per axis, of histograms and joint histograms; below 65535
     std::vector<Range> ranges; ///< of the bins, by position in `channels`; empty: DatasetInfo::channelRange
     /// Degree of interest 0..1 of a sample, given the physical values of `channels` (NaN where absent) and its
@@ -33,11 +34,13 @@ std::vector<std::array<int, 2>> allPairs(int count);
 /// Empty if the distribution of a brick is unknown (as for magnitudes), or if the query has joint histograms or a
 /// degree of interest.
 ///
-/// Samples, min and max are those of computeStatistics at full resolution; the mean is within 2^-24 of the largest
-/// range of a brick. Within each bin of a brick samples are assumed to be uniform over the values that can occur. So
-/// the sum of histogram bins up to any border is off by less than the content of the brick bins around that border (and
-/// by one from rounding), and the deviation by at most the RMS width of the brick bins, over samples. Bricks with
-/// absent samples contribute their volume in proportion.
+/// Samples, min and max are those of computeStatistics at full resolution. The mean counts every brick with its volume:
+/// where the cells within each brick are alike, it is within 2^-24 of the largest range of a brick; else, as where a
+/// face of the box halves cells, it is a preview, since within a brick it counts samples. Within each bin of a brick
+/// samples are assumed to be uniform over the values that can occur. So the sum of histogram bins up to any border is
+/// off by less than the content of the brick bins around that border (and by one from rounding), and, of cells that are
+/// alike, the deviation by at most the RMS width of the brick bins. Bricks with absent samples contribute their volume
+/// in proportion. Volumes of bins are not noted: with `binsByVolume` the result is empty.
 std::optional<Statistics> notedStatistics(const BrickSource& source, const StatisticsQuery& query);
 
 /// Computes statistics on all cores; the result does not depend on the number of threads (degrees of interest are

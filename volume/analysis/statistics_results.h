@@ -14,6 +14,8 @@ struct Histogram {
     Range range;
     std::vector<std::uint64_t> count; ///< H: present samples per bin
     std::vector<double> focus;        ///< F: sum of their degrees of interest; F / H is the share in focus
+    /// The volume of their cells, and of these times the degree of interest; empty unless asked for.
+    std::vector<double> volume = {}, focusVolume = {};
 };
 
 /// Bin (bx, by) is element by * bins + bx. Samples absent in either channel take no part.
@@ -24,16 +26,18 @@ struct JointHistogram {
     std::vector<std::uint64_t> count;
     std::vector<double> focus;
     std::uint64_t samples = 0; ///< present in both channels, outside the ranges too
-    double correlation = 0;    ///< Pearson's r over them; NaN where a channel is constant or nothing is there
-    double focusCorrelation = 0, outsideCorrelation = 0; ///< weighted by the degree of interest d, and by 1 - d
-    std::vector<double> mean; ///< of the channel StatisticsQuery::meanOf per bin, NaN where it has no sample
+    double correlation = 0;    ///< Pearson's r by volume; NaN where a channel is constant or nothing is there
+    double focusCorrelation = 0, outsideCorrelation = 0; ///< weighted by the degree of interest d, too, and by 1 - d
+    std::vector<double> mean; ///< by volume, of the channel StatisticsQuery::meanOf per bin, NaN where it has no sample
+    std::vector<double> volume = {}, focusVolume = {}; ///< as of Histogram
 };
 
-/// Weighted statistics of present samples. `mean`, `deviation`, `min` and `max` are NaN if there is no sample.
+/// Weighted statistics of present samples. `mean`, `deviation`, `min` and `max` are NaN if there is no sample. Mean and
+/// deviation are of space: a sample counts with the volume of its cell, half as much where a face of the box halves it.
 struct Summary {
     double samples = 0; ///< sum of the weights
     double volume = 0;  ///< they stand for, in cubic length units: every sample's cell within DatasetInfo::bounds
-    double mean = 0, deviation = 0; ///< over samples, not volume; deviation: population
+    double mean = 0, deviation = 0; ///< by volume: mean = integral / volume; deviation: from it
     double min = 0, max = 0;        ///< of samples with a weight of at least 1/2
     /// Values times the volume they stand for, in the channel's unit times cubic length units; NaN where not summed.
     double integral = std::numeric_limits<double>::quiet_NaN();

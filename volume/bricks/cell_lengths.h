@@ -7,7 +7,8 @@
 
 namespace tessera::volume {
 
-/// Length of every sample's cell along one axis of a sublattice at a level, within the box: the cells tile the box.
+/// Length in space of every sample's cell along one axis of a sublattice at a level, within the box: the cells tile the
+/// box. Borders lie half-way between samples on the sheet of the axis (volume/field/axis_map.h).
 inline std::vector<double> cellLengths(const BrickGrid& grid, const Box& box, int level, int sublattice, int axis) {
     const Lattice& lattice = grid.lattice;
     const int fine = lattice.sublatticeSize(sublattice)[axis];
@@ -17,7 +18,8 @@ inline std::vector<double> cellLengths(const BrickGrid& grid, const Box& box, in
         if (i == 0) return box.lo[axis];
         if (i == count) return box.hi[axis];
         const double cells = (double(i) - 0.5) * (1 << level) + grid.levelPhase(level) + 0.5 * sublattice;
-        return std::clamp(lattice.origin[axis] + edge * cells, box.lo[axis], box.hi[axis]);
+        const double place = lattice.axes.toSpace(axis, lattice.origin[axis] + edge * cells);
+        return std::clamp(place, box.lo[axis], box.hi[axis]);
     };
     std::vector<double> lengths;
     for (int i = 0; i < count; ++i) lengths.push_back(border(i + 1) - border(i));

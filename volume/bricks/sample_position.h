@@ -6,7 +6,7 @@
 
 namespace tessera::volume {
 
-/// Physical position of a storage index of a level: on BCC odd z is the moved sublattice.
+/// Place in space of a storage index of a level: on BCC odd z is the moved sublattice.
 inline glm::dvec3 samplePosition(const BrickGrid& grid, glm::ivec3 at, int level) {
     const bool bcc = grid.lattice.kind == LatticeKind::BCC;
     const glm::dvec3 index(at.x, at.y, bcc ? at.z >> 1 : at.z);

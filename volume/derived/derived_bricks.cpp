@@ -11,6 +11,7 @@
 #include "volume/derived/stencil.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -49,6 +50,19 @@ void set(BrickSamples& samples, std::size_t i, double value) {
     else
         setAbsent(samples, i);
 }
+
+/// Sums of derivatives; absent as a whole where one of them is.
+template <std::size_t N> struct Derivative {
+    std::array<double, N> sum{};
+    bool there = true;
+    void add(std::size_t component, std::optional<double> derivative, double sign) {
+        sum[component] += sign * derivative.value_or(0);
+        there = there && derivative;
+    }
+    void store(Bricks& out, std::size_t i) const {
+        for (std::size_t n = 0; n < N; ++n) there ? set(out[n], i, sum[n]) : setAbsent(out[n], i);
+    }
+};
 
 } // namespace
 
@@ -198,7 +212,9 @@ struct DerivedBricks::Impl {
         Bricks out(3, empty(key));
         const auto near = around({channelOf(recipe.channel)}, key);
         everywhere(near, out, [&](glm::ivec3 at, std::size_t i) {
-            for (int axis = 0; axis < 3; ++axis) set(out[std::size_t(axis)], i, near[0].derivative(at, axis));
+            Derivative<3> value;
+            for (std::size_t axis = 0; axis < 3; ++axis) value.add(axis, near[0].derivative(at, int(axis)), 1);
+            value.store(out, i);
         });
         return out;
     }
@@ -207,7 +223,9 @@ struct DerivedBricks::Impl {
         Bricks out(1, empty(key));
         const auto near = around(componentsOf(source_->info(), recipe.vector), key);
         everywhere(near, out, [&](glm::ivec3 at, std::size_t i) {
-            set(out[0], i, near[0].derivative(at, 0) + near[1].derivative(at, 1) + near[2].derivative(at, 2));
+            Derivative<1> value;
+            for (std::size_t axis = 0; axis < 3; ++axis) value.add(0, near[axis].derivative(at, int(axis)), 1);
+            value.store(out, i);
         });
         return out;
     }
@@ -216,11 +234,13 @@ struct DerivedBricks::Impl {
         Bricks out(3, empty(key));
         const auto near = around(componentsOf(source_->info(), recipe.vector), key);
         everywhere(near, out, [&](glm::ivec3 at, std::size_t i) {
-            for (int axis = 0; axis < 3; ++axis) {
-                const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-                set(out[std::size_t(axis)], i,
-                    near[std::size_t(last)].derivative(at, next) - near[std::size_t(next)].derivative(at, last));
+            Derivative<3> value;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const std::size_t next = (axis + 1) % 3, last = (axis + 2) % 3;
+                value.add(axis, near[last].derivative(at, int(next)), 1);
+                value.add(axis, near[next].derivative(at, int(last)), -1);
             }
+            value.store(out, i);
         });
         return out;
     }

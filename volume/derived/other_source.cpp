@@ -36,12 +36,29 @@ bool near(glm::dvec3 a, glm::dvec3 b, glm::dvec3 scale) {
     return glm::all(glm::lessThanEqual(glm::abs(a - b), 1e-6 * glm::abs(scale)));
 }
 
+/// Whether the axes of a grid, in the unit of its lengths, are those of another one within 1e-6 of the cells there.
+bool sameAxes(const AxisMaps& a, const AxisMaps& b, double scale) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const AxisMap *own = a[axis], *other = b[axis];
+        if (!own && !other) continue;
+        if (!own || !other || own->of() != other->of() || own->samples() != other->samples()) return false;
+        const std::vector<double>&planes = own->planes(), &others = other->planes();
+        for (std::size_t i = 0; i < planes.size(); ++i) {
+            const double cell = std::min(i > 0 ? planes[i] - planes[i - 1] : HUGE_VAL,
+                                         i + 1 < planes.size() ? planes[i + 1] - planes[i] : HUGE_VAL);
+            if (!(std::abs(planes[i] - others[i] * scale) <= 1e-6 * cell)) return false;
+        }
+    }
+    return true;
+}
+
 /// Whether two grids have the same bricks with samples at the same positions.
 bool sameSamples(const BrickGrid& a, const BrickGrid& b, double scale) {
     return a.lattice.kind == b.lattice.kind && a.lattice.size == b.lattice.size && a.brickSize == b.brickSize &&
            a.levels == b.levels && a.phase == b.phase &&
            near(a.lattice.spacing, b.lattice.spacing * scale, a.lattice.spacing / glm::dvec3(a.lattice.size)) &&
-           near(a.lattice.origin, b.lattice.origin * scale, a.lattice.spacing);
+           near(a.lattice.origin, b.lattice.origin * scale, a.lattice.spacing) &&
+           sameAxes(a.lattice.axes, b.lattice.axes, scale);
 }
 
 BrickSamples absentBrick(const BrickGrid& grid, const BrickKey& key) {
@@ -62,12 +79,12 @@ SampledOnto::SampledOnto(const std::shared_ptr<const BrickSource>& source, const
 BrickSamples SampledOnto::read(const BrickSource& at, const BrickKey& key) const {
     if (sameGrid_) return at.read(key);
     const Box& box = at.info().bounds;
-    const glm::dvec3 slack = at.grid().lattice.spacing * 1e-6;
     std::vector<glm::dvec3> positions;
     BrickSamples out = absentBrick(grid_, key);
     SamplePositions position(grid_, key.index, key.level);
     for (std::size_t i = 0; i < out.values.size(); ++i, position.next()) {
         const glm::dvec3 wanted = position.at() * scale_, inside = glm::clamp(wanted, box.lo, box.hi);
+        const glm::dvec3 slack = at.grid().lattice.lengthsAt(inside) * 1e-6;
         // Positions on the border are inside, regardless of rounding.
         positions.push_back(glm::all(glm::lessThanEqual(glm::abs(wanted - inside), slack)) ? inside : wanted);
     }

@@ -1,6 +1,7 @@
 #include "volume/derived/stencil.h"
 
 #include "volume/bricks/parts_bricks.h"
+#include "volume/bricks/sample_position.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,9 +32,9 @@ std::optional<PartLabel> partLabel(const DatasetInfo& info, int channel) {
 
 Neighbourhood::Neighbourhood(const BrickGrid& grid, const BrickKey& key, int reach, const ReadSamples& read,
                              const std::optional<PartLabel>& label)
-    : samples_(gather(grid, key, reach, read)), size_(grid.brickSamples(key.index, key.level)),
-      first_(grid.levelBegin(key.index, key.level)), whole_(grid.levelSamples(key.level)),
-      spacing_(grid.lattice.spacing * double(1 << key.level)), reach_(reach),
+    : samples_(gather(grid, key, reach, read)), grid_(grid), level_(key.level),
+      size_(grid.brickSamples(key.index, key.level)), first_(grid.levelBegin(key.index, key.level)),
+      whole_(grid.levelSamples(key.level)), spacing_(grid.lattice.spacing * double(1 << key.level)), reach_(reach),
       slices_(grid.lattice.kind == LatticeKind::BCC ? 2 : 1) {
     if (label) parts_ = partsAround(grid, key, reach, read, *label);
 }
@@ -50,14 +51,30 @@ std::optional<double> Neighbourhood::at(glm::ivec3 in, int axis, int steps) cons
     return double(samples_.values[index]);
 }
 
-double Neighbourhood::derivative(glm::ivec3 in, int axis) const {
+double Neighbourhood::place(glm::ivec3 in, int axis) const {
+    return samplePosition(grid_, first_ + in, level_)[axis];
+}
+
+std::optional<double> Neighbourhood::derivative(glm::ivec3 in, int axis) const {
     std::optional<double> lower = at(in, axis, -1), upper = at(in, axis, 1);
+    const int step = axis == 2 ? slices_ : 1;
+    if (!lower && !upper) return whole_[axis] <= step ? std::optional(0.0) : std::nullopt;
+    if (grid_.lattice.axes[axis] != nullptr) {
+        glm::ivec3 before = in, after = in;
+        before[axis] -= step;
+        after[axis] += step;
+        const double here = *at(in), middle = place(in, axis);
+        const double down = lower ? middle - place(before, axis) : 0, up = upper ? place(after, axis) - middle : 0;
+        if (!upper) return (here - *lower) / down;
+        if (!lower) return (*upper - here) / up;
+        return ((*upper - here) * (down / up) + (here - *lower) * (up / down)) / (down + up);
+    }
     double width = 2 * spacing_[axis];
     if (lower.has_value() != upper.has_value()) {
         (lower ? upper : lower) = at(in);
         width = spacing_[axis];
     }
-    return lower && upper ? (*upper - *lower) / width : 0;
+    return (*upper - *lower) / width;
 }
 
 namespace {

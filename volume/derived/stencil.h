@@ -31,15 +31,21 @@ public:
     glm::ivec3 size() const { return size_; } ///< of the brick itself
     /// The sample at a place of the brick, `steps` samples of its sublattice away along an axis; nothing where absent.
     std::optional<double> at(glm::ivec3 in, int axis = 0, int steps = 0) const;
-    /// Change per physical length along an axis: central difference, one-sided beside absent samples, 0 where both
-    /// neighbours are absent. The sample itself must be present.
-    double derivative(glm::ivec3 in, int axis) const;
+    /// Change per length in space along an axis: of the parabola through the sample and its two neighbours at their
+    /// distances (the central difference where these are equal), one-sided beside absent samples, nothing where both
+    /// neighbours are absent. 0 along an axis on which there is one sample only. The sample itself must be present.
+    std::optional<double> derivative(glm::ivec3 in, int axis) const;
 
 private:
     BrickSamples samples_;
+    /// Place in space, along an axis, of the sample at a place of the brick.
+    double place(glm::ivec3 in, int axis) const;
+
+    BrickGrid grid_;
+    int level_;
     std::vector<std::uint8_t> parts_; ///< of the samples; empty: all are of one
     glm::ivec3 size_, first_, whole_;
-    glm::dvec3 spacing_; ///< between samples of a sublattice at this level
+    glm::dvec3 spacing_; ///< on the sheet, between samples of a sublattice at this level
     int reach_, slices_;
 };
 

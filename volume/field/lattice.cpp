@@ -1,5 +1,6 @@
 #include "volume/field/lattice.h"
 
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -16,8 +17,16 @@ glm::dvec3 Lattice::between(glm::dvec3 place) const {
     if (kind != LatticeKind::CC) return cells;
     for (int axis = 0; axis < 3; ++axis)
         if (const AxisMap* map = axes[axis]) {
-            const double index = map->between(place[axis]);
-            cells[axis] = (map->origin() + index * map->spacing() - origin[axis]) / spacing[axis];
+            if (spacing[axis] == map->spacing()) {
+                const double index = map->between(place[axis]);
+                cells[axis] = (map->origin() + index * map->spacing() - origin[axis]) / spacing[axis];
+                continue;
+            }
+            // A coarser level: the two of its samples around the place.
+            const double base = std::floor(cells[axis]);
+            const double a = map->toSpace(origin[axis] + base * spacing[axis]),
+                         b = map->toSpace(origin[axis] + (base + 1) * spacing[axis]);
+            cells[axis] = base + (place[axis] - a) / (b - a);
         }
     return cells;
 }

@@ -3,6 +3,7 @@
 #include "volume/bricks/brick_cache.h"
 #include "volume/bricks/brick_columns.h"
 #include "volume/bricks/sample_cells.h"
+#include "volume/bricks/sample_position.h"
 #include "volume/derived/stencil.h"
 
 #include <map>
@@ -105,9 +106,42 @@ private:
     std::vector<Neighbourhood> value_, label_;
 };
 
+/// Where borders of cells lie between samples along an axis.
+class Between {
+public:
+    Between(const BrickGrid& grid, const SampleCells& cells) : grid_(grid), cells_(cells) {}
+
+    /// The share of the sample beyond in the value at the border on a side of a sample.
+    double share(glm::ivec3 at, int axis, int side) const {
+        if (!grid_.lattice.axes[axis]) return 0.5;
+        const double own = distance(at, axis, side);
+        return own / (own + distance(next(at, axis, side), axis, -side));
+    }
+    /// How far the border on a side is, in distances to the sample on the other side.
+    double beyond(glm::ivec3 at, int axis, int side) const {
+        if (!grid_.lattice.axes[axis]) return 0.5;
+        return distance(at, axis, side) / std::abs(place(next(at, axis, -side), axis) - place(at, axis));
+    }
+
+private:
+    glm::ivec3 next(glm::ivec3 at, int axis, int side) const {
+        at[axis] += side * (axis == 2 ? cells_.sublattices() : 1);
+        return at;
+    }
+    double place(glm::ivec3 at, int axis) const { return samplePosition(grid_, at, 0)[axis]; }
+    /// From a sample to the border of its cell.
+    double distance(glm::ivec3 at, int axis, int side) const {
+        const double lower = cells_.lower(at)[axis], border = side > 0 ? lower + cells_.size(at)[axis] : lower;
+        return std::abs(border - place(at, axis));
+    }
+
+    const BrickGrid& grid_;
+    const SampleCells& cells_;
+};
+
 /// Fluxes out of the cell of one sample.
-void addSample(const Around& around, const SampleCells& cells, const BalanceQuery& query, glm::ivec3 in, glm::ivec3 at,
-               int own, Part& part) {
+void addSample(const Around& around, const SampleCells& cells, const Between& between, const BalanceQuery& query,
+               glm::ivec3 in, glm::ivec3 at, int own, Part& part) {
     const auto c = around.carried(in);
     if (!c) return;
     const double volume = cells.volume(at);
@@ -135,13 +169,17 @@ void addSample(const Around& around, const SampleCells& cells, const BalanceQuer
                 // Half a cell on along the straight line through the sample before: nothing flows through a wall.
                 const auto innerC = around.carried(in, axis, -side), innerU = around.velocity(in, axis, axis, -side);
                 const bool line = innerC && innerU;
-                add(part.absent, line ? here.times(1.5).plus(carriedBy(*innerC, *innerU).times(-0.5)) : here, side,
+                const double on = line ? between.beyond(at, axis, side) : 0;
+                add(part.absent, line ? here.times(1 + on).plus(carriedBy(*innerC, *innerU).times(-on)) : here, side,
                     area);
                 continue;
             }
             const auto other = around.region(in, axis, side);
             if (other && *other == own) continue;
-            add(other ? part.borders[*other] : part.unlabelled, here.plus(carriedBy(*otherC, *otherU)).times(0.5), side,
+            const double share = between.share(at, axis, side);
+            const Carried there = carriedBy(*otherC, *otherU);
+            add(other ? part.borders[*other] : part.unlabelled,
+                share == 0.5 ? here.plus(there).times(0.5) : here.times(1 - share).plus(there.times(share)), side,
                 area);
         }
     }
@@ -165,6 +203,7 @@ std::vector<RegionBalance> computeBalance(const BrickSource& source, const Balan
     const BrickCache cache(std::shared_ptr<const BrickSource>(std::shared_ptr<void>(), &source), query.cacheBytes);
     const BrickGrid grid = source.grid();
     const SampleCells cells(grid, source.info().bounds, 0);
+    const Between between(grid, cells);
     std::vector<Part> total(regions.size());
     inBrickOrder(
         allBricks(grid),
@@ -176,7 +215,7 @@ std::vector<RegionBalance> computeBalance(const BrickSource& source, const Balan
                 const auto own = around.region(at - first);
                 if (!own) return;
                 for (std::size_t r = 0; r < regions.size(); ++r)
-                    if (regions[r] == *own) addSample(around, cells, query, at - first, at, *own, parts[r]);
+                    if (regions[r] == *own) addSample(around, cells, between, query, at - first, at, *own, parts[r]);
             });
             return parts;
         },

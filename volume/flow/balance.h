@@ -52,12 +52,12 @@ struct RegionBalance {
 };
 
 /// Flux through each surface by the midpoint rule: a face of the box uses the values of the first or last samples, each
-/// times the area of its cell; the border between neighbouring samples of two regions uses the mean of c U.n of both.
-/// Where c or U is absent on the other side, whatever region is there, c U.n is continued to the border by the straight
-/// line through the sample and the one before it (constant where that is absent), so that nothing flows through walls.
-/// On BCC each sublattice is integrated by itself and
-/// both are averaged. Convection only: diffusion, and changes of what is stored over time, are in the residual. Throws
-/// Error, Cancelled.
+/// times the area of its cell; the border between neighbouring samples of two regions uses the mean of c U.n of both,
+/// on uneven axes the value of the straight line between both at the border. Where c or U is absent on the other side,
+/// whatever region is there, c U.n is continued to the border by the straight line through the sample and the one
+/// before it (constant where that is absent), so that nothing flows through walls. On BCC each sublattice is integrated
+/// by itself and both are averaged. Convection only: diffusion, and changes of what is stored over time, are in the
+/// residual. Throws Error, Cancelled.
 std::vector<RegionBalance> computeBalance(const BrickSource& source, const BalanceQuery& query,
                                           const Progress& progress = {});
 

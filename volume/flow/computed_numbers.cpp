@@ -111,9 +111,9 @@ RegionBalance wholeBalance(const std::vector<RegionBalance>& regions) {
     return out;
 }
 
-Summary wholeSummary(const RegionStatistics& regions, std::size_t channel, const Summary& known) {
+Summary wholeSummary(const RegionStatistics& regions, std::size_t channel, const Summary& known, bool byVolume) {
     Summary out = known;
-    double sum = 0, samples = 0;
+    double sum = 0, weights = 0;
     bool any = false;
     for (const std::vector<Summary>& summaries : regions.summary) {
         const Summary& of = summaries[channel];
@@ -121,10 +121,11 @@ Summary wholeSummary(const RegionStatistics& regions, std::size_t channel, const
         out.min = any ? std::min(out.min, of.min) : of.min;
         out.max = any ? std::max(out.max, of.max) : of.max;
         any = true;
-        sum += of.samples * of.mean;
-        samples += of.samples;
+        const double weight = byVolume ? of.volume : of.samples;
+        sum += weight * of.mean;
+        weights += weight;
     }
-    out.mean = samples > 0 ? sum / samples : 0;
+    out.mean = weights > 0 ? sum / weights : 0;
     return out;
 }
 
@@ -136,7 +137,7 @@ ComputedNumbers selectedNumbers(const ComputedNumbers& numbers, const DatasetInf
         NumbersAtTime kept{time.time, {}};
         for (const LabelNumbers& from : time.labels) {
             if (!from.label.empty() && !has(from.label)) continue;
-            LabelNumbers to{from.label, from.velocity, {}, {}, from.statistics, {}};
+            LabelNumbers to{from.label, from.velocity, {}, {}, from.statistics, {}, from.byVolume};
             to.statistics.all.clear();
             for (std::vector<Summary>& summaries : to.statistics.summary) summaries.clear();
             for (std::size_t c = 0; c < from.channels.size(); ++c) {
@@ -167,7 +168,7 @@ std::optional<RegionStatistics> knownStatistics(const ComputedNumbers& numbers, 
         bool found = false;
         for (const LabelNumbers& each : known->labels) {
             const auto name = std::ranges::find(each.channels, channel);
-            if (each.label != label || name == each.channels.end()) continue;
+            if (each.label != label || name == each.channels.end() || !each.byVolume) continue;
             const auto position = std::size_t(name - each.channels.begin());
             const RegionStatistics& from = each.statistics;
             if (!out) {

@@ -19,6 +19,7 @@ struct LabelNumbers {
     std::vector<std::string> channels, carried;       ///< names of channels, and of those with balances
     RegionStatistics statistics;                      ///< of `channels`; summaries have no integrals
     std::vector<std::vector<RegionBalance>> balances; ///< [carried], then as statistics.regions; region 0 if no label
+    bool byVolume = true; ///< means and deviations (Summary); false: of samples, as earlier versions computed them
 };
 
 struct NumbersAtTime {
@@ -40,7 +41,7 @@ NumbersAtTime computeNumbers(const BrickSource& source, int time, std::size_t ca
 /// The part of numbers that is of these times and of parameters of this description.
 ComputedNumbers selectedNumbers(const ComputedNumbers& numbers, const DatasetInfo& info);
 
-/// The known statistics of channels by name, at a time that has numbers; nothing unless all are known.
+/// The known statistics of channels by name, at a time that has numbers; nothing unless all are known, by volume.
 std::optional<RegionStatistics> knownStatistics(const ComputedNumbers& numbers, double time, const std::string& label,
                                                 const std::vector<std::string>& channels);
 /// The known balances of a channel that a velocity carries.

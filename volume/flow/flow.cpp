@@ -48,6 +48,29 @@ std::optional<Step> tryStep(const ChangingField& field, glm::dvec3 from, double 
     return Step{end, *k7, glm::length(h * difference / cell)};
 }
 
+/// Edges of a cell for the next step from a place along a direction: of uneven axes the smaller ones of both ends.
+glm::dvec3 cellFor(const StreamlineSettings& s, glm::dvec3 place, glm::dvec3 direction) {
+    if (!s.lattice) return s.cell;
+    const glm::dvec3 here = s.lattice->lengthsAt(place);
+    if (s.lattice->isEven()) return here;
+    const glm::dvec3 end = place + direction * (s.longestStep / glm::length(direction / here));
+    return glm::min(here, s.lattice->lengthsAt(end));
+}
+
+/// The most of a direction that a step goes: over `longestStep` cells of uneven axes, whatever their lengths.
+double mostOf(const StreamlineSettings& s, glm::dvec3 place, glm::dvec3 direction) {
+    double most = std::numeric_limits<double>::infinity();
+    if (!s.lattice || s.lattice->isEven()) return most;
+    const glm::dvec3 cells = s.lattice->toCells(place);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0) continue;
+        glm::dvec3 to = cells;
+        to[axis] += std::copysign(s.longestStep, direction[axis] * s.lattice->spacing[axis]);
+        most = std::min(most, std::abs((s.lattice->fromCells(to)[axis] - place[axis]) / direction[axis]));
+    }
+    return most;
+}
+
 /// From a point with the vector `slope`, along the field (sign 1) or against it (-1), until time `last`; without the
 /// point itself.
 Pathline halfLine(const ChangingField& field, glm::dvec3 place, double time, glm::dvec3 slope, double sign, double last,
@@ -55,12 +78,13 @@ Pathline halfLine(const ChangingField& field, glm::dvec3 place, double time, glm
     Pathline out;
     double length = 0, wanted = 0.25; // step in cells
     for (int steps = 0; steps < s.mostSteps && length < s.longest && glm::length(slope) > s.slowest;) {
-        const double cells = glm::length(slope / s.cell), physical = glm::length(slope);
+        const glm::dvec3 cell = cellFor(s, place, sign * slope);
+        const double cells = glm::length(slope / cell), physical = glm::length(slope);
         if (!(cells > 0)) break;
         const double room = std::min((s.longest - length) / physical, std::abs(last - time)) * cells;
-        const double taken = std::min({wanted, s.longestStep, room});
+        const double taken = std::min({wanted, s.longestStep, room, mostOf(s, place, sign * slope) * cells});
         if (!(taken > 0)) break;
-        const std::optional<Step> step = tryStep(field, place, time, slope, sign * taken / cells, s.cell);
+        const std::optional<Step> step = tryStep(field, place, time, slope, sign * taken / cells, cell);
         if (!step || step->error > s.tolerance) {
             if (taken <= kShortestStep) break;
             wanted = step ? taken * std::max(0.2, 0.9 * std::pow(s.tolerance / step->error, 0.2)) : taken / 2;
@@ -92,12 +116,12 @@ std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position) {
         return {present ? double(grid.values[index]) : 0.0, present};
     };
     const LevelGeometry geometry{lattice.kind, 1, 0};
-    if (grid.parts.empty()) return tetrahedral(geometry, sample, lattice.toCells(position)).value();
+    if (grid.parts.empty()) return tetrahedral(geometry, sample, lattice.between(position)).value();
     const auto partOf = [&](glm::ivec3 place) {
         return int(grid.parts[lattice.index(clampToLattice(lattice.kind, lattice.size, place))]);
     };
-    const OwnPart own(lattice.kind, lattice.size, sample, partOf, lattice.nearest(position));
-    return tetrahedral(geometry, own, lattice.toCells(position)).value();
+    const OwnPart own(lattice, sample, partOf, lattice.nearest(position));
+    return tetrahedral(geometry, own, lattice.between(position)).value();
 }
 
 std::optional<glm::dvec3> VectorGrid::at(glm::dvec3 position) const {

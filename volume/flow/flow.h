@@ -44,7 +44,10 @@ private:
 using ChangingField = std::function<std::optional<glm::dvec3>(glm::dvec3 position, double time)>;
 
 struct StreamlineSettings {
-    glm::dvec3 cell{1};       ///< steps and errors are measured in these lengths
+    glm::dvec3 cell{1}; ///< steps and errors are measured in these lengths
+    /// In the lengths of its cells at each place instead; with uneven axes no step crosses more than `longestStep` of
+    /// cells, however short those on its way are.
+    std::optional<Lattice> lattice = {};
     double tolerance = 1e-4;  ///< error of a step, cells
     double longestStep = 0.5; ///< cells
     double longest = 1e300;   ///< of a line, each way, physical

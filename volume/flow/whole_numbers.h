@@ -13,7 +13,7 @@ bool coversAll(const RegionStatistics& statistics);
 /// The balance of everything from those of regions that cover it.
 RegionBalance wholeBalance(const std::vector<RegionBalance>& regions);
 /// Mean, least and most of everything from the summaries of one channel in regions that cover it; counts, volume and
-/// deviation are those of `known`.
-Summary wholeSummary(const RegionStatistics& regions, std::size_t channel, const Summary& known);
+/// deviation are those of `known`. `byVolume`: LabelNumbers::byVolume.
+Summary wholeSummary(const RegionStatistics& regions, std::size_t channel, const Summary& known, bool byVolume);
 
 } // namespace tessera::volume

@@ -88,6 +88,27 @@ glm::vec3 sampleGradient(const SampleGrid& grid, glm::ivec3 at) {
     return grid.lattice.kind == LatticeKind::CC ? gradientCc(grid, at, centre) : gradientBcc(grid, at, centre);
 }
 
+glm::vec3 spaceGradient(const SampleGrid& grid, glm::ivec3 at) {
+    const Lattice& lattice = grid.lattice;
+    if (lattice.kind != LatticeKind::CC || lattice.isEven())
+        return sampleGradient(grid, at) / glm::vec3(lattice.lengthsAt(lattice.position(at)));
+    const double centre = grid.values[lattice.index(at)];
+    glm::dvec3 out(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 step(0);
+        step[axis] = 1;
+        const Neighbour lower = neighbour(grid, at - step), upper = neighbour(grid, at + step);
+        const double middle = lattice.position(at)[axis], down = middle - lattice.position(at - step)[axis],
+                     up = lattice.position(at + step)[axis] - middle;
+        const double below = (centre - double(lower.value)) / down, above = (double(upper.value) - centre) / up;
+        if (lower.there && upper.there)
+            out[axis] = (above * down + below * up) / (down + up);
+        else if (lower.there || upper.there)
+            out[axis] = upper.there ? above : below;
+    }
+    return glm::vec3(out);
+}
+
 CrossedEdges::CrossedEdges(const SampleGrid& grid, float value, const Progress& progress)
     : grid_(grid), value_(value), kinds_(std::size_t(edgeKinds(grid.lattice.kind))), inside_(grid.lattice.size),
       present_(grid.lattice.size) {
@@ -165,8 +186,13 @@ void CrossedEdges::place(int y, int z, SurfaceMesh& out) const {
                 if (!(t >= 0 && t <= 1)) t = 0.5f; // beside an infinite value
                 out.positions[number] =
                     glm::vec3(glm::mix(lattice.position(a), lattice.position(b), double(t)) - out.origin);
-                const glm::vec3 perCell = glm::mix(sampleGradient(grid_, a), sampleGradient(grid_, b), t);
-                const glm::vec3 down = -perCell / glm::vec3(lattice.spacing);
+                glm::vec3 down(0);
+                if (lattice.isEven()) {
+                    const glm::vec3 perCell = glm::mix(sampleGradient(grid_, a), sampleGradient(grid_, b), t);
+                    down = -perCell / glm::vec3(lattice.spacing);
+                } else {
+                    down = -glm::mix(spaceGradient(grid_, a), spaceGradient(grid_, b), t);
+                }
                 const float length = glm::length(down);
                 out.normals[number] = length > 0 && length < 1e30f ? down / length : glm::vec3(0);
                 ++number;

@@ -79,5 +79,7 @@ private:
 
 /// Change of the value per cell and axis at a sample, from its neighbours that are present.
 glm::vec3 sampleGradient(const SampleGrid& grid, glm::ivec3 at);
+/// Per length in space: on uneven axes of CC by the distances of the neighbours, of BCC by the cell there.
+glm::vec3 spaceGradient(const SampleGrid& grid, glm::ivec3 at);
 
 } // namespace tessera::volume

@@ -83,9 +83,10 @@ SurfaceMesh extract(const SampleGrid& grid, float value, glm::dvec3 origin, cons
 
 bool spans(const SampleGrid& grid, const Box& box) {
     const Lattice& lattice = grid.lattice;
-    const glm::dvec3 last = lattice.position(lattice.size - 1), slack = glm::abs(lattice.spacing) * 1e-6;
-    return lattice.kind == LatticeKind::CC && glm::all(glm::lessThanEqual(glm::abs(lattice.origin - box.lo), slack)) &&
-           glm::all(glm::lessThanEqual(glm::abs(last - box.hi), slack));
+    const glm::dvec3 first = lattice.position(glm::ivec3(0)), last = lattice.position(lattice.size - 1);
+    const auto slack = [&](glm::dvec3 at) { return lattice.lengthsAt(at) * 1e-6; };
+    return lattice.kind == LatticeKind::CC && glm::all(glm::lessThanEqual(glm::abs(first - box.lo), slack(first))) &&
+           glm::all(glm::lessThanEqual(glm::abs(last - box.hi), slack(last)));
 }
 
 } // namespace
@@ -93,7 +94,8 @@ bool spans(const SampleGrid& grid, const Box& box) {
 SurfaceMesh extractIsosurface(const SampleGrid& grid, double value, const std::optional<Box>& box,
                               const Progress& progress) {
     const Lattice& lattice = grid.lattice;
-    const glm::dvec3 origin = originFor(box.value_or(Box{lattice.origin, lattice.position(lattice.size - 1)}));
+    const glm::dvec3 origin =
+        originFor(box.value_or(Box{lattice.position(glm::ivec3(0)), lattice.position(lattice.size - 1)}));
     if (!box || spans(grid, *box)) return extract(grid, float(value), origin, progress);
     SurfaceMesh mesh = extract(padded(grid), float(value), origin, progress);
     clipToBox(mesh, *box);

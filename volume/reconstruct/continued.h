@@ -121,6 +121,60 @@ std::optional<double> continued(LatticeKind kind, glm::ivec3 at, const Own& own,
     return best.sum / best.count;
 }
 
+/// The same on a CC lattice of uneven axes, in space: linear along an axis by the distances of samples, else with the
+/// slope around the nearest sample, so that linear functions go on exactly.
+template <class Own, class Counts>
+std::optional<double> continuedInSpace(const Lattice& lattice, glm::ivec3 at, const Own& own, const Counts& counts) {
+    constexpr double kSame = 1e-6, kUnspanned = 1e-9;
+    struct Nearest {
+        double sum = 0, distance = 1e300;
+        int count = 0;
+        void add(double value, double from) {
+            if (from > distance + kSame) return;
+            if (from < distance - kSame) sum = 0, count = 0, distance = from;
+            sum += value;
+            ++count;
+        }
+    } lines, single;
+    const glm::dvec3 place = lattice.position(at);
+    const auto slopeAt = [&](glm::ivec3 first, double here, glm::dvec3 cell) { // per cell
+        const glm::dvec3 from = lattice.position(first);
+        glm::dmat3 squares(0);
+        glm::dvec3 changes(0);
+        for (const LineDirection& direction : directionsOf(LatticeKind::CC)) {
+            const glm::ivec3 index = first + direction.step / 2;
+            const std::optional<double> there = own(index);
+            if (!there) continue;
+            const glm::dvec3 way = (lattice.position(index) - from) / cell;
+            const double length = glm::length(way);
+            squares += glm::outerProduct(way / length, way / length);
+            changes += way / length * ((*there - here) / length);
+        }
+        const double trace = squares[0][0] + squares[1][1] + squares[2][2];
+        return trace == 0 ? glm::dvec3(0) : glm::inverse(squares + glm::dmat3(kUnspanned * trace)) * changes;
+    };
+    for (const LineDirection& direction : directionsOf(LatticeKind::CC))
+        for (int m = 1; m <= kLineReach && m * direction.length < lines.distance + kSame; ++m) {
+            const glm::ivec3 step = direction.step / 2, first = at + m * step;
+            const std::optional<double> a = own(first);
+            if (!a) continue;
+            if (!counts(first)) break;
+            const bool alongAxis = step.x * step.x + step.y * step.y + step.z * step.z == 1;
+            const glm::dvec3 from = lattice.position(first);
+            if (const std::optional<double> b = alongAxis ? own(first + step) : std::nullopt) {
+                const double known = glm::length(lattice.position(first + step) - from);
+                lines.add(*a + (*a - *b) * glm::length(place - from) / known, m * direction.length);
+            } else if (m * direction.length < single.distance + kSame) {
+                const glm::dvec3 cell = lattice.lengthsAt(from);
+                single.add(*a + glm::dot(slopeAt(first, *a, cell), (place - from) / cell), m * direction.length);
+            }
+            break;
+        }
+    const Nearest& best = lines.count > 0 && lines.distance <= single.distance + kSame ? lines : single;
+    if (best.count == 0) return std::nullopt;
+    return best.sum / best.count;
+}
+
 /// Whether two storage indices lie within a cell of each other along each axis: no absent sample lies between them.
 inline bool isBeside(LatticeKind kind, glm::ivec3 a, glm::ivec3 b) {
     const glm::ivec3 apart = glm::abs(halfCellsOf(kind, a) - halfCellsOf(kind, b));
@@ -138,6 +192,11 @@ public:
     OwnPart(LatticeKind kind, glm::ivec3 size, const Samples& samples, const PartOf& partOf, glm::ivec3 near)
         : kind_(kind), size_(size), samples_(samples), partOf_(partOf), near_(near), here_(samples(near)),
           own_(partOf(near)) {}
+    /// Of a lattice, which must outlive this: in space where its axes are uneven (of BCC in cells).
+    OwnPart(const Lattice& lattice, const Samples& samples, const PartOf& partOf, glm::ivec3 near)
+        : OwnPart(lattice.kind, lattice.size, samples, partOf, near) {
+        if (lattice.kind == LatticeKind::CC && !lattice.isEven()) uneven_ = &lattice;
+    }
 
     Sample operator()(glm::ivec3 at) const {
         if (partOf_(at) == own_) return samples_(at);
@@ -148,10 +207,13 @@ public:
             return sample.present ? std::optional(sample.value) : std::nullopt;
         };
         const auto counts = [&](glm::ivec3 there) { return isBeside(kind_, there, near_); };
-        return {continued(kind_, at, own, counts).value_or(here_.value), true};
+        const std::optional<double> value =
+            uneven_ ? continuedInSpace(*uneven_, at, own, counts) : continued(kind_, at, own, counts);
+        return {value.value_or(here_.value), true};
     }
 
 private:
+    const Lattice* uneven_ = nullptr;
     LatticeKind kind_;
     glm::ivec3 size_;
     const Samples& samples_;

@@ -88,10 +88,10 @@ private:
     std::optional<double> between(glm::dvec3 position, glm::ivec3 near) const {
         const LevelGeometry geometry = levelGeometry(source_.grid(), 0);
         const Lattice& lattice = source_.grid().lattice;
-        const glm::dvec3 cells = lattice.toCells(position);
+        const glm::dvec3 cells = lattice.between(position);
         if (!labels_) return tetrahedral(geometry, samples_, cells).value();
         const auto partOf = [this](glm::ivec3 place) { return partAt(place); };
-        const OwnPart own(lattice.kind, lattice.size, samples_, partOf, near);
+        const OwnPart own(lattice, samples_, partOf, near);
         std::optional<double> value = tetrahedral(geometry, own, cells).value();
         if (value && !parameter().ranges.empty()) {
             const Range range = source_.info().channelRange(channel_);

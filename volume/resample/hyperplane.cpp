@@ -18,11 +18,20 @@ struct Box4 {
     glm::dvec4 lo, hi;
 };
 
-/// Extent from the first to the last sample of the lattice, over both grids of D4*.
+/// Extent from the first to the last sample of the lattice, over both grids of D4*: on its sheet.
 Box4 boxOf(const Lattice4& lattice) {
     glm::dvec4 span(lattice.size - 1);
     if (lattice.kind == LatticeKind4::D4) span = {glm::dvec3(span) + 0.5, span.w * 0.5};
     return {lattice.origin, lattice.origin + lattice.spacing * span};
+}
+
+/// The same in space.
+Box4 spaceOf(const Lattice4& lattice, Box4 box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        box.lo[axis] = lattice.axes.toSpace(axis, box.lo[axis]);
+        box.hi[axis] = lattice.axes.toSpace(axis, box.hi[axis]);
+    }
+    return box;
 }
 
 /// Weight of a frame at a time: linear between frames of the same parity, constant beyond the first and the last.
@@ -49,8 +58,10 @@ public:
           times_(times) {
         const double frames = box_.hi.w - box_.lo.w;
         if (!times.empty()) box_.lo.w = times.front(), box_.hi.w = times.back();
+        space_ = spaceOf(lattice_, box_);
         const double perLattice = frames > 0 ? (box_.hi.w - box_.lo.w) / frames : 1; // units of the plane's t
-        const glm::dvec4 extent = box_.hi - box_.lo, steep = glm::abs(plane.normal * extent);
+        const glm::dvec4 extent = box_.hi - box_.lo, reach = space_.hi - space_.lo,
+                         steep = glm::abs(plane.normal * reach);
         out_.solved = 0;
         for (int axis = 1; axis < 4; ++axis)
             if (steep[axis] >= steep[out_.solved]) out_.solved = axis;
@@ -63,9 +74,10 @@ public:
             grid_.origin[i] = box_.lo[axis];
             grid_.spacing[i] = lattice_.spacing[axis] * finer * (axis == 3 ? perLattice : 1);
             grid_.size[i] = int(extent[axis] / grid_.spacing[i] + 1e-9) + 1;
+            if (axis < 3) grid_.axes.of[std::size_t(i)] = lattice_.axes.of[std::size_t(axis)];
             ++i;
         }
-        margin_ = 1e-9 * extent[out_.solved];
+        margin_ = 1e-9 * reach[out_.solved];
         out_.field = makeField(grid_, ScalarType::F32);
         for (std::vector<float>* values : {&sum_, &coverage_, &best_}) values->resize(grid_.count());
         if (!categorical_) part_.resize(grid_.count(), 1);
@@ -92,7 +104,8 @@ public:
                     const glm::dvec4 point = pointAt({i, j, int(k)});
                     if (!isTouched(frame, point)) continue;
                     const double weight = frameWeight(lattice_, frame, latticeTime(point.w));
-                    const glm::dvec3 cells = ownGrid.toCells(glm::dvec3(point));
+                    const glm::dvec3 place(point),
+                        cells = categorical_ ? ownGrid.toCells(place) : ownGrid.between(place);
                     if (categorical_)
                         addLabel(index, samples, cells, weight);
                     else
@@ -133,8 +146,8 @@ private:
     }
 
     bool isTouched(int frame, const glm::dvec4& point) const {
-        return point[out_.solved] >= box_.lo[out_.solved] - margin_ &&
-               point[out_.solved] <= box_.hi[out_.solved] + margin_ &&
+        return point[out_.solved] >= space_.lo[out_.solved] - margin_ &&
+               point[out_.solved] <= space_.hi[out_.solved] + margin_ &&
                frameWeight(lattice_, frame, latticeTime(point.w)) > 0;
     }
 
@@ -171,7 +184,7 @@ private:
 
     Lattice4 lattice_;
     bool categorical_;
-    Box4 box_;
+    Box4 box_, space_; ///< on the sheet, in space
     Hyperplane plane_;
     std::span<const double> times_;
     HyperplaneSlice out_;

@@ -21,10 +21,11 @@ struct HyperplaneSlice {
     int solved = 3;          ///< the axis that follows
 };
 
-/// Samples the slice at the distances of the CC lattice that a series stands for (D4*: cell edges / sqrt 2). The axis
-/// solved for is the one whose share of the normal, times its extent, is largest. Linear in space
-/// and time, on D4* the mean of both grids: give a prefiltered() series for quasi-interpolation. One frame is held at
-/// a time. Throws Error when the normal is 0 or the plane misses the lattice.
+/// Samples the slice at the distances of the CC lattice that a series stands for (D4*: cell edges / sqrt 2); uneven
+/// axes keep their maps, but for the one solved for. The plane is one of space. The axis solved for is the one whose
+/// share of the normal, times its extent, is largest. Linear in space and time, on D4* the mean of both grids: give a
+/// prefiltered() series for quasi-interpolation. One frame is held at a time. Throws Error when the normal is 0 or the
+/// plane misses the lattice.
 ///
 /// `times`: the time of each frame, rising; t is then a time, not a frame number, and along it the slice has as many
 /// even steps as the frames have. Empty: t is in units of the lattice.

@@ -29,8 +29,9 @@ Field fromCc(const Field& source, const Lattice& target, const ResampleOptions& 
 
 } // namespace
 
-Field resample(const Field& source, const Lattice& target, const ResampleOptions& options, const Progress& progress) {
-    checkOrder(options);
+Field resample(const Field& source, const Lattice& target, const ResampleOptions& asked, const Progress& progress) {
+    checkOrder(asked);
+    const ResampleOptions options = optionsBetween(source.lattice.axes, target.axes, asked);
     if (options.sharpen > 0) {
         ResampleOptions plain = options;
         plain.sharpen = 0;

@@ -20,6 +20,10 @@ namespace tessera::volume {
 /// a signal of its own. From CC to BCC a gap of one absent sample along an axis stays a gap: where a sublattice would
 /// step over it, its sample nearer to the gap is absent too.
 ///
+/// Between lattices on one sheet (volume/field/axis_map.h) all of this is in cells of the sheet. Where their axes
+/// differ, samples are taken at their places in space and only linearly (optionsBetween): exact for linear
+/// functions of space between the samples of CC.
+///
 /// Results stay within the range of the source's present samples of their part, integer types round; a same-lattice
 /// target without edge enhancement is the identity. Deterministic on any number of threads. Throws Cancelled.
 Field resample(const Field& source, const Lattice& target, const ResampleOptions& options,

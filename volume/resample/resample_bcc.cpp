@@ -107,12 +107,13 @@ std::array<std::vector<PairTap>, 2> pairTaps(const Lattice& source, const Lattic
 }
 
 /// The sample with a part's number that is nearest to a position, of those up to kLineReach samples from `nearest`, the
-/// nearest of all; empty if there is none.
+/// nearest of all on the sheet; empty if there is none.
 std::optional<std::size_t> nearestOf(const Lattice& lattice, const PartNumbers& number, std::uint8_t own,
                                      std::size_t nearest, const glm::dvec3& position) {
     if (number(nearest) == own) return nearest;
     const glm::ivec3 centre = storageIndex(lattice, nearest);
     const glm::ivec3 reach(kLineReach, kLineReach, 2 * kLineReach);
+    const glm::dvec3 wanted = lattice.axes.toSheet(position);
     const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0)), hi = glm::min(centre + reach, lattice.size - 1);
     std::optional<std::size_t> best;
     double least = std::numeric_limits<double>::infinity();
@@ -121,7 +122,7 @@ std::optional<std::size_t> nearestOf(const Lattice& lattice, const PartNumbers& 
             for (int x = lo.x; x <= hi.x; ++x) {
                 const std::size_t at = lattice.index({x, y, z});
                 if (number(at) != own) continue;
-                const glm::dvec3 apart = (lattice.position({x, y, z}) - position) / lattice.spacing;
+                const glm::dvec3 apart = (lattice.sheetPosition({x, y, z}) - wanted) / lattice.spacing;
                 const double distance = glm::dot(apart, apart);
                 if (distance < least) best = at, least = distance;
             }

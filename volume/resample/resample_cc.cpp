@@ -37,13 +37,14 @@ void filterSlices(const CcTaps& taps, const CcPart& part, std::span<const Value>
                   const TargetPart& out, const Progress& progress) {
     const Lattice& target = out.field.lattice;
     const std::size_t sublattices = taps.kernel.size();
+    const bool inSpace = !(taps.source.axes == taps.target.axes);
     const std::size_t sliceSize = std::size_t(target.size.x) * std::size_t(target.size.y);
     T* const samples = out.field.as<T>().data();
     forSlices(target, progress, [&](int k) {
         const std::size_t number = std::size_t(out.first + k);
         const AxisTaps& own = taps.kernel[number % sublattices];
         const std::size_t first = std::size_t(k) * sliceSize;
-        SliceFilter<T, Value>(part.field, values, own, range)
+        SliceFilter<T, Value>(part.field, values, own, range, inSpace)
             .run(within(own.z[number / sublattices], part.first), samples + first,
                  out.mask != nullptr ? out.mask->data() + first : nullptr);
     });

@@ -122,10 +122,11 @@ SlicedFrame sharpened(const SlicedFrame& source, double amount, int step, const 
     return out;
 }
 
-SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const ResampleOptions& options,
+SlicedFrame resampled(const SlicedFrame& source, const Lattice& target, const ResampleOptions& asked,
                       const SliceMemory& memory, const Progress& progress) {
-    if (source.whole) return inMemory(resample(*source.whole, target, options, progress));
-    checkOrder(options);
+    if (source.whole) return inMemory(resample(*source.whole, target, asked, progress));
+    checkOrder(asked);
+    const ResampleOptions options = optionsBetween(source.lattice.axes, target.axes, asked);
     if (options.sharpen > 0) {
         ResampleOptions plain = options;
         plain.sharpen = 0;

@@ -134,7 +134,24 @@ Tap tapAt(double cells, int count, const ResampleOptions& options) {
     return tap;
 }
 
+namespace {
+
+bool sameAxis(const Lattice& a, const Lattice& b, int axis) {
+    const AxisMap *own = a.axes[axis], *other = b.axes[axis];
+    return own == other || (own && other && *own == *other);
+}
+
+/// The place in space of sample `i` of a sublattice; the other coordinates mean nothing.
+glm::dvec3 placeAlong(const Lattice& lattice, int sublattice, int axis, int i) {
+    glm::dvec3 cells(0);
+    cells[axis] = i + sublattice * 0.5;
+    return lattice.fromCells(cells);
+}
+
+} // namespace
+
 double sourceCells(const Lattice& source, const Lattice& target, int sublattice, int axis, int i) {
+    if (!sameAxis(source, target, axis)) return source.toCells(placeAlong(target, sublattice, axis, i))[axis];
     const double half = sublattice * 0.5;
     const double cells =
         (target.origin[axis] - source.origin[axis] + target.spacing[axis] * (i + half)) / source.spacing[axis];
@@ -147,8 +164,17 @@ AxisTaps tapsFor(const Lattice& source, const Lattice& target, int sublattice, c
     AxisTaps taps;
     std::vector<Tap>* const axes[] = {&taps.x, &taps.y, &taps.z};
     for (int axis = 0; axis < 3; ++axis)
-        for (int i = 0; i < size[axis]; ++i)
-            axes[axis]->push_back(tapAt(sourceCells(source, target, sublattice, axis, i), source.size[axis], options));
+        for (int i = 0; i < size[axis]; ++i) {
+            const double cells = sourceCells(source, target, sublattice, axis, i);
+            const int count = source.size[axis];
+            if (sameAxis(source, target, axis) || options.filter == ResampleFilter::Nearest) {
+                axes[axis]->push_back(tapAt(cells, count, options));
+                continue;
+            }
+            Tap tap = tapAt(source.between(placeAlong(target, sublattice, axis, i))[axis], count, options);
+            tap.nearest = std::clamp(int(std::floor(cells + 0.5)), tap.cell[0], tap.cell[1]);
+            axes[axis]->push_back(tap);
+        }
     return taps;
 }
 

@@ -5,10 +5,27 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
-/// Where the samples of one lattice lie among those of another, axis by axis: inside of resampling.
+/// Where the samples of one lattice lie among those of another, axis by axis, and by which filter.
 namespace tessera::volume {
+
+/// The filter between lattices whose axes differ (volume/field/axis_map.h). Only the linear filter is exact for linear
+/// functions there, so that it takes the place of all but the nearest sample. Between lattices on one sheet the filter
+/// that was asked for.
+inline ResampleOptions optionsBetween(const AxisMaps& from, const AxisMaps& to, ResampleOptions options) {
+    if (!(from == to) && options.filter != ResampleFilter::Nearest) options.filter = ResampleFilter::Linear;
+    return options;
+}
+
+/// What a log says of that; "" where the filter is the one that was asked for.
+inline std::string filterNote(const AxisMaps& from, const AxisMaps& to, const ResampleOptions& options) {
+    if (optionsBetween(from, to, options).filter == options.filter) return "";
+    return "linear between samples in place of " +
+           std::string(kResampleFilterNames[static_cast<std::size_t>(options.filter)]) +
+           ", since the spacing of the axes differs";
+}
 
 /// Source samples that one target coordinate of one axis uses: `count` of them from `first` on, some with weight 0.
 struct Tap {
@@ -35,10 +52,12 @@ struct AxisTaps {
     std::vector<Tap> x, y, z;
 };
 
-/// Cells, in the source's even sublattice, of sample `i` of a target sublattice.
+/// Cells, in the source's even sublattice, of sample `i` of a target sublattice: on the sheet that both axes share, or
+/// where the axes differ, by its place in space.
 double sourceCells(const Lattice& source, const Lattice& target, int sublattice, int axis, int i);
 
-/// The taps of every sample of a target sublattice in a CC source.
+/// The taps of every sample of a target sublattice in a CC source. Along an axis that differs from that of the source
+/// they are of places in space: linear between the samples around, or of the sample whose cell a place lies in.
 AxisTaps tapsFor(const Lattice& source, const Lattice& target, int sublattice, const ResampleOptions& options);
 
 } // namespace tessera::volume

@@ -96,9 +96,11 @@ template <class T, class Value> class SliceFilter {
 public:
     using Sum = SumOf<T>;
 
-    /// `values`: one per sample of the source. All arguments must outlive the filter.
-    SliceFilter(const Field& source, std::span<const Value> values, const AxisTaps& taps, const StoredRange<T>& range)
-        : source_(source), values_(values), taps_(taps), range_(range), stored_(source.as<T>()) {
+    /// `values`: one per sample of the source; `inSpace`: taps are of places in space. All arguments must outlive the
+    /// filter.
+    SliceFilter(const Field& source, std::span<const Value> values, const AxisTaps& taps, const StoredRange<T>& range,
+                bool inSpace)
+        : source_(source), values_(values), taps_(taps), range_(range), inSpace_(inSpace), stored_(source.as<T>()) {
         for (const Tap& x : taps.x)
             for (int k = 0; k < x.count; ++k) weightsX_.push_back(Sum(x.weight[std::size_t(k)]));
     }
@@ -201,7 +203,10 @@ private:
     double ownOnly(const Tap& x, const Tap& y, const Tap& z, glm::ivec3 nearest) const {
         const double here = double(stored_[source_.lattice.index(nearest)]);
         return ofOwnPart(source_.lattice, *source_.mask, {&x, &y, &z}, stored_, [&](glm::ivec3 at, const auto& own) {
-            return continued(LatticeKind::CC, at, own, [](glm::ivec3) { return true; }).value_or(here);
+            const auto any = [](glm::ivec3) { return true; };
+            const std::optional<double> value =
+                inSpace_ ? continuedInSpace(source_.lattice, at, own, any) : continued(LatticeKind::CC, at, own, any);
+            return value.value_or(here);
         });
     }
 
@@ -209,6 +214,7 @@ private:
     std::span<const Value> values_;
     const AxisTaps& taps_;
     const StoredRange<T>& range_;
+    bool inSpace_;
     std::span<const T> stored_;
     std::vector<Sum> weightsX_, plane_, row_;
     std::vector<std::uint8_t> met_, rowMet_;

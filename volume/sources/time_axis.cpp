@@ -20,6 +20,13 @@ Lattice gridWithTime(const DatasetInfo& from, int axis) {
     Lattice grid;
     grid.origin = from.bounds.lo;
     for (int a = 0; a < 3; ++a) {
+        if (const AxisMap* map = from.lattice.axes[a]; map && a != axis) {
+            grid.size[a] = map->samples();
+            grid.spacing[a] = map->spacing();
+            grid.origin[a] = map->origin();
+            grid.axes.of[std::size_t(a)] = from.lattice.axes.of[std::size_t(a)];
+            continue;
+        }
         const double extent = from.bounds.size()[a];
         grid.size[a] =
             a == axis ? int(from.times.size()) : int(std::lround(extent / (from.lattice.spacing[a] * finer))) + 1;
@@ -37,8 +44,8 @@ Field planeOverTime(const BrickSource& source, int channel, const Lattice& grid,
     for (int j = 0; j < grid.size[up]; ++j)
         for (int i = 0; i < grid.size[right]; ++i) {
             glm::dvec3& at = positions.emplace_back(place);
-            at[right] = grid.origin[right] + grid.spacing[right] * i;
-            at[up] = grid.origin[up] + grid.spacing[up] * j;
+            at[right] = grid.axes.toSpace(right, grid.origin[right] + grid.spacing[right] * i);
+            at[up] = grid.axes.toSpace(up, grid.origin[up] + grid.spacing[up] * j);
             at = glm::clamp(at, info.bounds.lo, info.bounds.hi);
         }
     Field field = makeField(grid, ScalarType::F32);

@@ -23,10 +23,10 @@ struct TimeAxis {
 
 /// The plane of a data set at axis.place, at all times, as a data set of one time in which time takes the place of that
 /// axis. It keeps the extent of the axis: a time t lies at t / timePerLength(), so that what was cubic stays so.
-/// Samples lie on a CC grid at the distances of the source (BCC: those of the CC grid it stands for) and along time at
-/// as many even steps as there are times; between times values are mixed. A further parameter "time" is the time
-/// itself. Frames are made when they are loaded and read the plane at every time. Throws Error when the source has
-/// one time or no extent along the axis.
+/// Uneven axes that stay keep their samples; along even ones these lie at the distances of the source (BCC: those of
+/// the CC grid it stands for), and along time at as many even steps as there are times; between times values are mixed.
+/// A further parameter "time" is the time itself. Frames are made when they are loaded and read the plane at every
+/// time. Throws Error when the source has one time or no extent along the axis.
 Dataset withTimeAlong(std::shared_ptr<const BrickSource> source, const TimeAxis& axis);
 
 /// Of data made so: times per length along the axis, in units of both.

@@ -148,10 +148,9 @@ void run(const StatsRequest& request) {
 } // namespace
 
 void addStatsCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "stats",
-        "Statistics of every region: mean, standard deviation, volume; averages along an axis or line; balances. With "
-        "--all-times and -o, processes of mpirun or srun share the times");
+    CLI::App* command = app.add_subcommand("stats", "Statistics of every region: mean and standard deviation by "
+                                                    "volume, volume; averages along an axis or line; balances. With "
+                                                    "--all-times and -o, processes of mpirun or srun share the times");
     const auto request = std::make_shared<StatsRequest>();
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();

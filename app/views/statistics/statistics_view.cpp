@@ -164,8 +164,8 @@ void chooseBalance(ToolRow& tools, const volume::DatasetInfo& info, StatisticsVi
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered())
-        tooltip("Count, mean, standard deviation and volume; or inflow, outflow and reaction of a parameter in every "
-                "region");
+        tooltip("Count, mean and standard deviation by volume, and volume; or inflow, outflow and reaction of a "
+                "parameter in every region");
 }
 
 void drawBalance(ViewContext& context, ToolRow& tools, const std::string& pane, int channel, int label,
