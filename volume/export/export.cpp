@@ -142,7 +142,7 @@ void requireEven(const Lattice& lattice, const std::string& ending, const std::s
         if (lattice.axes[axis]) uneven += (uneven.empty() ? "" : ", ") + std::string(1, "xyz"[axis]);
     if (!uneven.empty())
         throw Error(ending + " holds one spacing per axis, but that along " + uneven +
-                        " is uneven: write .vtr, or .raw with its sidecar",
+                        " is uneven: write .vtr, or .raw with its sidecar, or an even grid by --even",
                     path);
 }
 

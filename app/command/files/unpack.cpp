@@ -6,6 +6,7 @@
 #include "volume/base/terminal.h"
 #include "volume/export/export.h"
 #include "volume/flow/flow_channels.h"
+#include "volume/resample/even_grid.h"
 #include "volume/resample/hyperplane.h"
 
 #include <CLI/CLI.hpp>
@@ -24,6 +25,7 @@ struct UnpackRequest {
     std::vector<double> plane;
     std::vector<volume::DerivedParameter> derived;
     int level = 0;
+    bool even = false;
     volume::TimeFilter timeFilter = volume::TimeFilter::Cubic;
     codec::RemoteOptions remote;
 };
@@ -92,11 +94,13 @@ void run(const UnpackRequest& request) {
     const auto archive = std::make_shared<const codec::Archive>(request.input, request.remote);
     const Progress progress = terminalProgress("unpack");
     const bool derives = !request.derived.empty();
-    const volume::Dataset dataset = request.plane.empty()
-                                        ? withDerived(codec::gridDataset(archive, request.level, request.timeFilter),
-                                                      request.derived, progress.part(0, derives ? 0.5 : 0))
-                                        : planeDataset(archive, request.plane);
-    const bool values = !archive->metadata().lossless;
+    volume::Dataset dataset = request.plane.empty()
+                                  ? withDerived(codec::gridDataset(archive, request.level, request.timeFilter),
+                                                request.derived, progress.part(0, derives ? 0.5 : 0))
+                                  : planeDataset(archive, request.plane);
+    const bool resamples = request.even && !dataset.info.lattice.isEven();
+    if (resamples) dataset = volume::onEvenGrid(dataset);
+    const bool values = resamples || !archive->metadata().lossless;
     for (const std::string& written : volume::exportDataset(dataset, select(request, dataset.info, values),
                                                             request.output, progress.part(derives ? 0.5 : 0, 1)))
         say("%s\n", written.c_str());
@@ -117,6 +121,9 @@ void addUnpackCommand(CLI::App& app) {
         ->delimiter(',');
     command->add_option("-l,--level", request->level, "Level of detail: 0 is full resolution")
         ->check(CLI::NonNegativeNumber);
+    command->add_flag(
+        "--even", request->even,
+        "Resample a grid of uneven axes to one spacing per axis, linearly, for formats that hold no other");
     command
         ->add_option("--plane", request->plane,
                      "A,B,C,D,E: write the slice a x + b y + c z + d t + e = 0 through space and time, as a grid over "
