@@ -56,7 +56,7 @@ WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch) {
 }
 
 WorldFrame worldFrame(const volume::DatasetInfo& info, glm::dvec3 stretch) {
-    WorldFrame frame = worldFrame(info, stretch);
+    WorldFrame frame = worldFrame(info.bounds, stretch);
     frame.axes = info.lattice.axes;
     return frame;
 }
