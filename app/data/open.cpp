@@ -237,8 +237,8 @@ DataRef dataRequested(const OpenRequest& request, const SessionDocument* layout,
     return data;
 }
 
-/// Shows data in a layout, without one in the default session.
-Opened openData(DataRef data, std::optional<SessionDocument> layout, const Progress& progress) {
+/// Shows data in a layout, without one in the default session. `latticeChosen`: the lattice of pictures was.
+Opened openData(DataRef data, std::optional<SessionDocument> layout, bool latticeChosen, const Progress& progress) {
     Opened opened;
     const bool errors = layout && packsForErrors(layout->session, data) && !sameData(layout->session.data, data);
     if (errors) {
@@ -248,6 +248,11 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, const Progr
         data.derived = layout->session.data.derived;
     }
     Sources sources = openSources(data, opened.messages, progress);
+    const PictureLattice lattice = firstLattice(data.lattice, sources.numbers->info());
+    if (!latticeChosen && lattice != data.lattice) {
+        data.lattice = lattice;
+        sources = drawnOn(lattice, sources);
+    }
     if (errors)
         showErrors(*layout, data, sources, opened.messages);
     else if (layout && layout->session.data.originals && !data.originals)
@@ -290,7 +295,7 @@ Opened open(const OpenRequest& request, const Progress& progress) {
     std::vector<std::string> said;
     DataRef data = dataRequested(request, layout ? &*layout : nullptr, folder, said, progress);
     if (request.remote) data.remote = *request.remote;
-    Opened opened = openData(std::move(data), std::move(layout), progress);
+    Opened opened = openData(std::move(data), std::move(layout), request.lattice.has_value(), progress);
     opened.messages.insert(opened.messages.begin(), said.begin(), said.end());
     return opened;
 }

@@ -349,6 +349,10 @@ double storedBytes(const std::shared_ptr<const volume::BrickSource>& pictures) {
     return archive ? double(archive->fileBytes()) : 0;
 }
 
+PictureLattice firstLattice(PictureLattice usual, const volume::DatasetInfo& numbers) {
+    return numbers.lattice.isEven() ? usual : PictureLattice::Grid;
+}
+
 Sources drawnOn(PictureLattice lattice, const Sources& sources) {
     Sources out = sources;
     out.pictures = drawnOn(sources.packed ? sources.packed : sources.numbers, lattice);

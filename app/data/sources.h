@@ -52,6 +52,9 @@ Sources underived(const Sources& sources);
 /// archive stores.
 bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin);
 
+/// The lattice that pictures of data are first drawn on, where none was chosen: uneven axes on their grid, since layers
+/// of a cell lie on one half of a body-centred lattice only and borders would look like a zigzag.
+PictureLattice firstLattice(PictureLattice usual, const volume::DatasetInfo& numbers);
 /// The same data drawn on another lattice; nothing is read again.
 Sources drawnOn(PictureLattice lattice, const Sources& sources);
 

@@ -19,8 +19,8 @@ constexpr double kPageDash = 5, kPageDashPeriod = 8, kPageDot = 2.2;
 /// The ticks of an axis that have room: their texts lie along it, or each takes a line.
 TickLabels pageTicks(const PlotAxis& axis, double length, bool lines, double text) {
     if (!axis.numbered) return {};
-    return fittingTicks(axis.range, length, text * (lines ? 0.8 : 1.2), true,
-                        [&](const std::string& each) { return lines ? text : pageTextWidth(each, text); });
+    return scaledTicks(axis.range, axis.scale, length, text * (lines ? 0.8 : 1.2), true,
+                       [&](const std::string& each) { return lines ? text : pageTextWidth(each, text); });
 }
 
 class PlotMarks {

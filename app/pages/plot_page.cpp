@@ -130,12 +130,16 @@ private:
                 grid.sharedY && oneAxis(plots_, row * grid.columns, std::min(count, (row + 1) * grid.columns), 1,
                                         [](const Plot& plot) -> const PlotAxis& { return plot.y; });
     }
+    std::vector<std::string> textsBeside(const PlotAxis& axis, int most) const {
+        if (!axis.numbered) return {};
+        if (axis.scale.isEven()) return tickLabels(axis.range, most).texts;
+        return scaledTicks(axis.range, axis.scale, most, 0, true, [](const std::string&) { return 0.9; }).texts;
+    }
     double numbersBeside() const {
         double widest = 0;
         for (const Plot& plot : plots_)
             for (const int most : {3, 5, 8, 12}) // more numbers may have more digits
-                for (const std::string& text :
-                     plot.y.numbered ? tickLabels(plot.y.range, most).texts : std::vector<std::string>{})
+                for (const std::string& text : textsBeside(plot.y, most))
                     widest = std::max(widest, pageTextWidth(text, form_.text));
         return widest + 8 * scale_;
     }

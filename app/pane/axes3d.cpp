@@ -67,6 +67,13 @@ SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const v
             bounds};
 }
 
+SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const volume::DatasetInfo& info,
+                      glm::dvec3 stretch) {
+    SpaceFrame frame = spaceFrame(min, max, camera, info.bounds, stretch);
+    frame.world.axes = info.lattice.axes;
+    return frame;
+}
+
 double coveredByBox(const SpaceFrame& frame, ImVec2 min, ImVec2 max) {
     std::array<ImVec2, 8> corners;
     for (int i = 0; i < 8; ++i) {
@@ -109,7 +116,8 @@ std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye,
         return high ? eye[axis] > half + 1e-6 : eye[axis] < -half - 1e-6;
     };
     std::vector<LabelledEdge> edges;
-    const std::optional<ImVec2> middle = frame.pixel(frame.bounds.center());
+    const std::optional<ImVec2> middle =
+        frame.pixel(frame.world.axes.isEven() ? frame.bounds.center() : frame.world.toPhysical(glm::dvec3(0)));
     if (!middle) return edges;
     for (int axis = 0; axis < 3; ++axis) {
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -178,6 +186,15 @@ TickLabels ticksAlong(const LabelledEdge& edge, const AxisLabel& label) {
     TickLabels ticks;
     // As many as fit along this edge on screen without overlap.
     const float dx = std::abs(edge.b.x - edge.a.x) / pixels, dy = std::abs(edge.b.y - edge.a.y) / pixels;
+    if (const AxisScale scale = label.scale(); !scale.isEven()) {
+        // Texts clear each other where they do so across or upwards.
+        const auto extent = [&](const std::string& text) {
+            const double across = (double(ImGui::CalcTextSize(text.c_str()).x) + double(em())) / std::max(1e-6f, dx);
+            return std::min(across, double(em()) * 1.4 / std::max(1e-6f, dy));
+        };
+        const Range drawn{scale.place(range.lo), scale.place(range.hi)};
+        return scaledTicks(drawn, scale, double(pixels), 0, true, extent);
+    }
     for (int most : {8, 6, 5, 4, 3, 2, 1}) {
         ticks = tickLabels(range, most);
         float widest = 0;
@@ -218,7 +235,7 @@ void drawLabelledEdges(ImDrawList& draw, const SpaceFrame& frame, const std::vec
         const float tick = em() * 0.35f;
         for (std::size_t i = 0; i < ticks.values.size(); ++i) {
             glm::dvec3 at = edge.from;
-            at[edge.axis] = ticks.values[i] / label.unit.perUnit;
+            at[edge.axis] = label.scale().number(ticks.values[i]) / label.unit.perUnit;
             const auto pixel = frame.pixel(at);
             if (!pixel) continue;
             const ImVec2 end{pixel->x + edge.outward.x * tick, pixel->y + edge.outward.y * tick};
@@ -359,10 +376,16 @@ void drawCursor3d(ImDrawList& draw, const SpaceFrame& frame, glm::dvec3 cursor) 
     draw.AddCircle(*middle, em() * 0.35f, colors.cursor, 20, 1.5f);
 }
 
-std::string stretchText(glm::dvec3 stretch) {
-    if (stretch == glm::dvec3(1)) return "";
+std::string stretchText(glm::dvec3 stretch, const volume::AxisMaps& axes) {
     const auto digits = [](double v) { return formatNumber(v, v >= 10 ? 1 : 0); };
-    return "stretch " + digits(stretch.x) + " : " + digits(stretch.y) + " : " + digits(stretch.z);
+    std::string text;
+    if (stretch != glm::dvec3(1))
+        text = "stretch " + digits(stretch.x) + " : " + digits(stretch.y) + " : " + digits(stretch.z);
+    std::string uneven;
+    for (int axis = 0; axis < 3; ++axis)
+        if (axes[axis]) uneven += (uneven.empty() ? "" : ", ") + std::string(1, "xyz"[axis]);
+    if (!uneven.empty()) text += (text.empty() ? "" : ", ") + uneven + " by cells";
+    return text;
 }
 
 ImU32 axisColor(int axis) {

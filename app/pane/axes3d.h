@@ -22,7 +22,10 @@ struct SpaceFrame {
     /// Pixel of a physical position; nothing behind the eye.
     std::optional<ImVec2> pixel(glm::dvec3 physical) const;
 };
+/// Of a box with even axes, and of a data set.
 SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const volume::Box& bounds, glm::dvec3 stretch);
+SpaceFrame spaceFrame(ImVec2 min, ImVec2 max, const vis::Camera& camera, const volume::DatasetInfo& info,
+                      glm::dvec3 stretch);
 
 /// The share of a rectangle of the picture that the box of the data covers; 1 where the box reaches behind the eye.
 double coveredByBox(const SpaceFrame& frame, ImVec2 min, ImVec2 max);
@@ -48,7 +51,8 @@ std::vector<LabelledEdge> labelledEdges(const SpaceFrame& frame, glm::dvec3 eye,
 double coveredByEdges(const std::vector<LabelledEdge>& edges, ImVec2 min, ImVec2 max);
 double coveredByAxes(const SpaceFrame& frame, const vis::Camera& camera, ImVec2 min, ImVec2 max);
 
-/// Ticks along an edge in the unit of its label, as many as have room for their numbers.
+/// Ticks along an edge in the unit of its label, as many as have room for their numbers; where it is drawn by cells
+/// their values are places (app/ui/axis_scale.h).
 TickLabels ticksAlong(const LabelledEdge& edge, const AxisLabel& label);
 
 /// Ticks, numbers and units on labelled edges; texts that would overlap or leave the picture are left out. `avoid` are
@@ -77,8 +81,8 @@ std::optional<vis::StandardView> drawTriad(ImDrawList& draw, ImVec2 center, floa
 /// The linked cross-hair: lines through the box along the three axes, a ring where it stands.
 void drawCursor3d(ImDrawList& draw, const SpaceFrame& frame, glm::dvec3 cursor);
 
-/// "stretch 4 : 4 : 1", or "" when all are 1.
-std::string stretchText(glm::dvec3 stretch);
+/// How far the picture is from true proportions: "stretch 4 : 4 : 1", "z by cells", both, or "" where it has them.
+std::string stretchText(glm::dvec3 stretch, const volume::AxisMaps& axes = {});
 
 /// Colour of an axis: x reddish, y greenish, z bluish, legible on the theme.
 ImU32 axisColor(int axis);

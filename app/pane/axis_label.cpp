@@ -2,6 +2,8 @@
 
 #include "app/ui/time_text.h"
 
+#include <algorithm>
+
 namespace tessera::app {
 
 const volume::TimeAxis* timeAxisOf(const Session& session, const volume::DatasetInfo& info) {
@@ -13,11 +15,19 @@ AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info) {
     AxisLabels labels;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double extent = info.bounds.size()[int(axis)];
-        labels[axis] = {kNames[axis], suitableLength(info.lengthUnit, extent > 0 ? extent : 1)};
+        labels[axis] = {.name = kNames[axis],
+                        .unit = suitableLength(info.lengthUnit, extent > 0 ? extent : 1),
+                        .map = info.lattice.axes.of[axis]};
     }
     if (const volume::TimeAxis* time = timeAxisOf(session, info))
-        labels[std::size_t(time->axis)] = {timeWord(info), {info.timeUnit, volume::timePerLength(info, *time)}};
+        labels[std::size_t(time->axis)] = {.name = timeWord(info),
+                                           .unit = {info.timeUnit, volume::timePerLength(info, *time)}};
     return labels;
+}
+
+double tellingLength(const volume::DatasetInfo& info, int axis, glm::dvec3 place, double share) {
+    const double ofBox = info.bounds.size()[axis] * share;
+    return info.lattice.axes[axis] ? std::min(ofBox, info.lattice.lengthsAt(place)[axis] / 4) : ofBox;
 }
 
 } // namespace tessera::app

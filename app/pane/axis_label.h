@@ -1,9 +1,11 @@
 #pragma once
 
 #include "app/session/session.h"
+#include "app/ui/axis_scale.h"
 #include "app/ui/ticks.h"
 
 #include <array>
+#include <memory>
 #include <string>
 
 namespace tessera::app {
@@ -12,6 +14,12 @@ namespace tessera::app {
 struct AxisLabel {
     std::string name = "x";
     LengthUnit unit;
+    std::shared_ptr<const volume::AxisMap> map = {}; ///< of an axis that is drawn by cells
+    bool reversed = false;                           ///< positions along the axis of the map, times -1
+    bool blank = false; ///< positions have no numbers: the direction runs across several axes, some of them uneven
+
+    /// Of positions in the unit.
+    AxisScale scale() const { return {map, unit.perUnit, reversed, blank}; }
 };
 using AxisLabels = std::array<AxisLabel, 3>;
 
@@ -22,5 +30,9 @@ const volume::TimeAxis* timeAxisOf(const Session& session, const volume::Dataset
 /// Of the axes of a session's data: lengths, but where time takes the place of an axis "t", or the name of the axis of
 /// times, in its unit.
 AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info);
+
+/// What positions along an axis near a place are told apart by, in lengths of the data: `share` of the box, or where an
+/// uneven axis has thin cells a quarter of one.
+double tellingLength(const volume::DatasetInfo& info, int axis, glm::dvec3 place, double share);
 
 } // namespace tessera::app

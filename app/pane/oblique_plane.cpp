@@ -61,6 +61,11 @@ ImVec2 PlaneFrame::pixel(glm::dvec2 at) const {
     return plot.pixel(at.x * perUnit.x, at.y * perUnit.y);
 }
 
+glm::dvec3 PlaneFrame::moved(glm::dvec3 physical, ImVec2 from, ImVec2 to) const {
+    const glm::dvec2 by = along(to) - along(from);
+    return world.axes.toSpace(world.axes.toSheet(physical) + plane.right * by.x + plane.up * by.y);
+}
+
 std::vector<glm::dvec3> planeSection(const SpacePlane& plane, const volume::Box& box) {
     std::vector<glm::dvec3> corners;
     const double tiny = 1e-12 * glm::length(box.size());
@@ -143,7 +148,7 @@ vis::Camera flatCamera(const FlatAxes& axes, glm::dvec3 middle, double height, c
     // Rows of the rotation are the eye's axes in world space; glm matrices are stored by columns.
     const glm::dmat3 eye = glm::transpose(glm::dmat3(right, up, glm::cross(right, up)));
     camera.orientation = glm::quat(glm::normalize(glm::quat_cast(eye)));
-    camera.target = glm::vec3(world.toWorld(middle));
+    camera.target = glm::vec3(world.sheetToWorld(middle));
     camera.fieldOfView = kFlatView;
     camera.distance =
         static_cast<float>(height * axes.scale.y / 2 / std::tan(glm::radians(static_cast<double>(kFlatView)) / 2));

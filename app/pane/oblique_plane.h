@@ -10,8 +10,9 @@
 #include <string>
 #include <vector>
 
-/// Planes that are tilted against the axes of the data: where they cut the box, and their flat picture. Places and
-/// directions are physical unless they are said to be of the world (vis/scene/camera.h).
+/// Planes that are tilted against the axes of the data: where they cut the box, and their flat picture. They are planes
+/// of the picture: places and directions are of the sheet of the axes (volume/field/axis_map.h), which is space where
+/// axes are even, unless they are said to be physical or of the world (vis/scene/camera.h).
 namespace tessera::app {
 
 /// A direction of length 1, +z for one without length.
@@ -53,8 +54,11 @@ struct PlaneFrame {
     volume::Box bounds; ///< physical
 
     ImVec2 pixel(glm::dvec2 along) const;
-    ImVec2 pixel(glm::dvec3 physical) const { return pixel(plane.along(physical)); }
+    ImVec2 pixel(glm::dvec3 physical) const { return pixel(plane.along(world.axes.toSheet(physical))); }
     glm::dvec2 along(ImVec2 pixel) const { return plot.data(pixel) / perUnit; }
+    /// The physical place in the plane that a pixel shows, and a physical place moved along it as a pixel moves.
+    glm::dvec3 placeAt(ImVec2 pixel) const { return world.axes.toSpace(plane.placeAt(along(pixel))); }
+    glm::dvec3 moved(glm::dvec3 physical, ImVec2 from, ImVec2 to) const;
 };
 
 /// Corners of the part of the plane in the box, in order around it; empty where the plane misses the box.
@@ -73,8 +77,8 @@ struct FlatAxes {
 };
 FlatAxes flatAxes(glm::dvec3 normal, const vis::WorldFrame& world);
 
-/// Looks against the normal of a plane, in parallel: `middle` (physical) in the middle of the picture, whose height is
-/// `height` physical lengths along `up`.
+/// Looks against the normal of a plane, in parallel: `middle` in the middle of the picture, whose height is `height`
+/// lengths along `up`.
 vis::Camera flatCamera(const FlatAxes& axes, glm::dvec3 middle, double height, const vis::WorldFrame& world);
 
 /// The slice layer that draws the plane of a view through the cursor.

@@ -25,13 +25,13 @@ TickLabels labelsOf(Range range, int most, bool noted) {
 }
 
 /// As many ticks as fit without the labels touching. `noted`: numbers may be shortened, which the note says.
-TickLabels ticksOn(AxisSide side, Range range, float length, bool noted) {
+TickLabels ticksOn(AxisSide side, Range range, float length, bool noted, const AxisScale& scale) {
     const bool bottom = side == AxisSide::Bottom;
-    return fittingTicks(range, double(length), double(em() * (bottom ? 0.9f : 0.1f)), noted,
-                        [&](const std::string& text) {
-                            const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-                            return double(bottom ? size.x : size.y);
-                        });
+    return scaledTicks(range, scale, double(length), double(em() * (bottom ? 0.9f : 0.1f)), noted,
+                       [&](const std::string& text) {
+                           const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+                           return double(bottom ? size.x : size.y);
+                       });
 }
 
 } // namespace
@@ -95,22 +95,27 @@ ImU32 toColor(std::array<double, 3> srgb, double alpha) {
     return IM_COL32(byte(srgb[0]), byte(srgb[1]), byte(srgb[2]), byte(alpha));
 }
 
-float axisRoom(AxisSide side, Range range, TitlePlace title) {
+float axisRoom(AxisSide side, Range range, TitlePlace title, const AxisScale& scale) {
     float room = tickLength() + em() * 0.2f;
     if (side == AxisSide::Bottom)
         room += em();
     else {
         float widest = 0;
-        for (int most : {10, 5, 3})
-            for (const std::string& text : labelsOf(range, most, title != TitlePlace::Nowhere).texts)
-                widest = std::max(widest, ImGui::CalcTextSize(text.c_str()).x);
+        if (!scale.isEven())
+            for (const float length : {50.0f, 25.0f, 12.0f})
+                for (const std::string& text : ticksOn(side, range, em() * length, true, scale).texts)
+                    widest = std::max(widest, ImGui::CalcTextSize(text.c_str()).x);
+        else
+            for (int most : {10, 5, 3})
+                for (const std::string& text : labelsOf(range, most, title != TitlePlace::Nowhere).texts)
+                    widest = std::max(widest, ImGui::CalcTextSize(text.c_str()).x);
         room += widest;
     }
     return std::ceil(room + (title == TitlePlace::Beside ? em() * 1.3f : 0.0f));
 }
 
-std::string axisNote(AxisSide side, Range range, float length) {
-    return ticksOn(side, range, length, true).note;
+std::string axisNote(AxisSide side, Range range, float length, const AxisScale& scale) {
+    return ticksOn(side, range, length, true, scale).note;
 }
 
 ColumnHeights columnHeights(float room, std::size_t plots) {
@@ -130,7 +135,7 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     const Range range = bottom ? frame.x : frame.y;
     const bool titled = !title.empty() || !unit.empty();
     const TickLabels ticks =
-        ticksOn(side, range, bottom ? frame.width() : frame.height(), titled || options.noteElsewhere);
+        ticksOn(side, range, bottom ? frame.width() : frame.height(), titled || options.noteElsewhere, options.scale);
     const PlotColors colors = plotColors();
     // If not all fits: the note comes first, since the numbers are wrong without it; then the title, then the unit; of
     // a title that does not fit alone, the unit comes before its last letters.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/ui/axis_scale.h"
 #include "app/ui/fitted_text.h"
 #include "volume/base/describe.h"
 
@@ -61,6 +62,7 @@ struct AxisOptions {
     /// Pixels outside of the frame for a left axis, so that several have their titles in one column; 0 = as needed.
     float room = 0;
     bool noteElsewhere = false; ///< an axis without title: the caller writes axisNote()
+    AxisScale scale = {};       ///< numbers of an axis that is drawn by cells; values of the frame are its places
 };
 
 /// Where the title of an axis is, with what its numbers must be read with.
@@ -71,10 +73,10 @@ enum class TitlePlace {
 };
 
 /// Pixels that drawAxis needs outside the frame for ticks, labels and title.
-float axisRoom(AxisSide side, Range range, TitlePlace title);
+float axisRoom(AxisSide side, Range range, TitlePlace title, const AxisScale& scale = {});
 
 /// What the numbers of an axis that is `length` pixels long must be read with ("+ 100000"); else "".
-std::string axisNote(AxisSide side, Range range, float length);
+std::string axisNote(AxisSide side, Range range, float length, const AxisScale& scale = {});
 
 /// Heights of plots below each other over one axis, pixels.
 struct ColumnHeights {

@@ -16,6 +16,7 @@ ScaleBar scaleBar(const vis::Camera& camera, const vis::WorldFrame& world, glm::
     int axis = 0;
     for (int i = 1; i < 3; ++i)
         if (std::abs(across[i]) > std::abs(across[axis])) axis = i;
+    if (world.axes[axis]) return {};
     const double perPixel = worldPerPixel / std::abs(world.scale[axis]), most = perPixel * double(mostPixels);
     if (!(most > 0) || !std::isfinite(most)) return {};
     const LengthUnit unit = suitableLength(lengthUnit, most);
@@ -24,7 +25,7 @@ ScaleBar scaleBar(const vis::Camera& camera, const vis::WorldFrame& world, glm::
     ScaleBar bar;
     bar.pixels = float(round / unit.perUnit / perPixel);
     bar.text = (camera.projection == vis::Projection::Perspective ? "~" : "") + formatQuantity(round, unit.name);
-    const bool even = stretch.x == stretch.y && stretch.y == stretch.z;
+    const bool even = stretch.x == stretch.y && stretch.y == stretch.z && world.axes.isEven();
     if (!even) bar.text += std::string(" along ") + "xyz"[axis];
     if (stretch[axis] != 1) bar.text += ", stretched " + formatQuantity(stretch[axis], "times");
     return bar;

@@ -16,7 +16,7 @@ struct ScaleBar {
 
 /// The longest bar of 1, 2 or 5 times a power of ten that takes at most `mostPixels`, across the picture in the plane
 /// of the camera's target. Where axes are stretched it holds for the axis that runs most nearly across, and says by how
-/// much that is stretched. `heightPixels`: of the picture.
+/// much that is stretched. None along an axis that is drawn by cells. `heightPixels`: of the picture.
 ScaleBar scaleBar(const vis::Camera& camera, const vis::WorldFrame& world, glm::dvec3 stretch,
                   const std::string& lengthUnit, float heightPixels, float mostPixels);
 

@@ -208,9 +208,11 @@ void measureShare(LegendEntry& entry) {
 namespace {
 
 /// The legend of a volume layer with the colours of its own parameter.
-LegendEntry legendOfVolume(const vis::VolumeLayer& volume, LegendEntry entry) {
+LegendEntry legendOfVolume(const vis::VolumeLayer& volume, const volume::DatasetInfo& info, LegendEntry entry) {
+    // Along rays lengths are those of the picture.
+    const std::string drawn = info.lattice.isEven() ? "" : " over the drawing";
     if (volume.style == vis::RayStyle::XRay) {
-        entry.title = "absorption by " + entry.title;
+        entry.title = "absorption by " + entry.title + drawn;
         measureShare(entry);
     } else if (volume.quantity == vis::Quantity::Gradient) {
         const double top = double(entry.function.gradientTop) * (entry.range.hi - entry.range.lo);
@@ -220,6 +222,7 @@ LegendEntry legendOfVolume(const vis::VolumeLayer& volume, LegendEntry entry) {
         entry.names.clear();
     } else {
         entry.regions = volume.style == vis::RayStyle::Composite && entry.function.kind == vis::TransferKind::Regions;
+        if (volume.style == vis::RayStyle::Average && !drawn.empty()) entry.title = "mean " + entry.title + drawn;
     }
     return entry;
 }
@@ -251,7 +254,7 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
             entries.push_back(entry);
         } else if (color) {
             const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
-            if (volume && volume->style != vis::RayStyle::XRay) entry = legendOfVolume(*volume, std::move(entry));
+            if (volume && volume->style != vis::RayStyle::XRay) entry = legendOfVolume(*volume, info, std::move(entry));
             entry.regions = false;
             entry.opacity = true;
             entry.title = "opacity by " + entry.title;
@@ -260,7 +263,7 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
         } else {
             const std::string function = layer.transfer.empty() ? name : layer.transfer;
             if (const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique))
-                entry = legendOfVolume(*volume, std::move(entry));
+                entry = legendOfVolume(*volume, info, std::move(entry));
             const bool ofValues = entry.title == info.channel(*channel).name;
             if (seen.insert(ofValues ? function : entry.title + " " + function).second) entries.push_back(entry);
         }

@@ -44,6 +44,7 @@ ContourNodes nodesOf(const volume::DatasetInfo& info, const ContourQuery& query)
     ContourNodes nodes;
     nodes.size = {nodesAlong(info, plane.right, span.x, finer), nodesAlong(info, plane.up, span.y, finer)};
     nodes.step = span / glm::dvec2(nodes.size - 1);
+    const volume::AxisMaps& maps = info.lattice.axes;
     const double slack = 1e-9 * glm::length(info.bounds.size());
     const double near = 1.5 * glm::length(nodes.step);
     bool beside = false;
@@ -59,9 +60,9 @@ ContourNodes nodesOf(const volume::DatasetInfo& info, const ContourQuery& query)
             }
             if (away > slack && away <= near) {
                 nodes.beside.push_back(nodes.places.size());
-                nodes.mirrored.push_back(2.0 * inside - at);
+                nodes.mirrored.push_back(maps.toSpace(2.0 * inside - at));
             }
-            nodes.places.push_back(away <= near ? std::optional(inside) : std::nullopt);
+            nodes.places.push_back(away <= near ? std::optional(maps.toSpace(inside)) : std::nullopt);
         }
     if (beside)
         for (const glm::dvec3& corner : planeSection(plane.plane(), info.bounds))

@@ -23,9 +23,13 @@ constexpr double kCellsPerPoint = 2;             ///< where the size of the page
 constexpr float kOnWhite = 0.7f;                 ///< of light colours, which vanish on white
 constexpr glm::vec4 kEdgeOnLight{0.267f, 0.267f, 0.267f, 1}, kEdgeOnDark{0.733f, 0.733f, 0.733f, 1};
 
-bool inside(const volume::Box& box, glm::dvec3 place) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (place[axis] < box.lo[axis] || place[axis] > box.hi[axis]) return false;
+/// Places of uneven axes come from their sheet, which leaves the last digits of their ends open.
+bool inside(const volume::DatasetInfo& info, glm::dvec3 place) {
+    const volume::Box& box = info.bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double slack = info.lattice.axes[axis] ? 1e-12 * box.size()[axis] : 0;
+        if (place[axis] < box.lo[axis] - slack || place[axis] > box.hi[axis] + slack) return false;
+    }
     return true;
 }
 
@@ -46,7 +50,6 @@ std::vector<glm::dvec3> rowOf(const PlanePicture& picture, int count, const Shar
 /// The colours of the parameter in cells; clear where values are absent.
 PlotImage cellImage(const volume::BrickSource& source, const PlanePicture& picture, glm::ivec2 cells,
                     const Progress& progress) {
-    const volume::Box& bounds = source.info().bounds;
     PlotImage image{cells.x, cells.y, {}};
     const auto across = [&](int i) { return (i + 0.5) / cells.x; };
     for (int j = cells.y - 1; j >= 0; --j) {
@@ -54,7 +57,7 @@ PlotImage cellImage(const volume::BrickSource& source, const PlanePicture& pictu
         const std::vector<glm::dvec3> row = rowOf(picture, cells.x, across, (j + 0.5) / cells.y);
         const auto values = volume::probeAlong(source, picture.shows.channel, row, picture.time);
         for (std::size_t i = 0; i < row.size(); ++i) {
-            const bool shown = values[i].interpolated && inside(bounds, row[i]);
+            const bool shown = values[i].interpolated && inside(source.info(), row[i]);
             const glm::dvec4 color =
                 shown ? vis::evaluate(picture.function, picture.range, *values[i].interpolated) : glm::dvec4(0);
             for (int k = 0; k < 3; ++k)
@@ -120,8 +123,17 @@ Plot plotOf(const volume::DatasetInfo& info, const PlanePicture& picture, bool d
     Plot plot;
     plot.title = picture.axes ? picture.place + ", " + colors : colors;
     plot.note = picture.axes ? "" : picture.place;
-    plot.x = {.title = right, .range = picture.shownX(), .unit = picture.right.unit.name};
-    plot.y = {.title = up, .range = picture.shownY(), .unit = picture.up.unit.name};
+    const auto axisOf = [](const std::string& title, Range range, const AxisLabel& label) {
+        return PlotAxis{.title = title,
+                        .range = range,
+                        .numbered = !label.blank,
+                        .unit = label.blank ? "" : label.unit.name,
+                        .scale = label.scale()};
+    };
+    plot.x = axisOf(right, picture.shownX(), picture.right);
+    plot.y = axisOf(up, picture.shownY(), picture.up);
+    if (const std::string uneven = unevenText(picture); !uneven.empty()) // a picture that is not to scale says so
+        plot.note += (plot.note.empty() ? "" : "; ") + uneven;
     if (picture.cursor) {
         plot.cursorX = picture.cursor->x * picture.right.unit.perUnit;
         plot.cursorY = picture.cursor->y * picture.up.unit.perUnit;
@@ -149,12 +161,14 @@ void addSamples(PlaneColumns& columns, const volume::BrickSource& source, const 
     for (int j = 0; j < picture.cells.y; ++j) {
         progress.advance(static_cast<double>(j) / picture.cells.y);
         std::vector<glm::dvec3> row = rowOf(picture, picture.cells.x, node(0), node(1)(j));
-        std::erase_if(row, [&](glm::dvec3 place) { return !inside(source.info().bounds, place); });
+        std::erase_if(row, [&](glm::dvec3 place) { return !inside(source.info(), place); });
         if (row.empty()) continue;
         for (const glm::dvec3& place : row) {
             columns.planes.push_back(picture.place);
             for (int k = 0; k < 2; ++k)
-                columns.along[std::size_t(k)].push_back(picture.along(place)[k] * picture.perUnit()[k]);
+                columns.along[std::size_t(k)].push_back((k == 0 ? picture.right : picture.up)
+                                                            .scale()
+                                                            .number(picture.along(place)[k] * picture.perUnit()[k]));
             for (int k = 0; k < 3; ++k)
                 columns.position[std::size_t(k)].push_back(place[k] * picture.positions[std::size_t(k)].unit.perUnit);
         }
@@ -213,8 +227,11 @@ Table planesTable(const volume::BrickSource& source, const std::vector<PlanePict
         if (picture->axes) continue;
         table.notes.push_back("u = " + directionText(picture->plane.right) +
                               ", v = " + directionText(picture->plane.up));
-        table.columns.push_back({.name = "u", .unit = picture->right.unit.name, .numbers = columns.along[0]});
-        table.columns.push_back({.name = "v", .unit = picture->up.unit.name, .numbers = columns.along[1]});
+        // Along a direction across uneven axes there are no lengths: the positions tell the places.
+        if (!picture->right.blank)
+            table.columns.push_back({.name = "u", .unit = picture->right.unit.name, .numbers = columns.along[0]});
+        if (!picture->up.blank)
+            table.columns.push_back({.name = "v", .unit = picture->up.unit.name, .numbers = columns.along[1]});
         break;
     }
     for (std::size_t axis = 0; axis < 3 && !planes.empty(); ++axis) {

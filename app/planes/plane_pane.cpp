@@ -49,10 +49,10 @@ vis::Scene planeScene(const ViewContext& context, const PlanePicture& picture, c
         scene.camera = vis::planeCamera(right, up, world);
         layer.orientation = static_cast<vis::SliceOrientation>(normal);
         scene.cursor = info.bounds.center();
-        scene.cursor[normal] = picture.plane.at[normal];
+        scene.cursor[normal] = picture.maps.toSpace(normal, picture.plane.at[normal]);
     } else {
         const glm::dvec3 middle =
-            picture.placeAt({(picture.x.lo + picture.x.hi) / 2, (picture.y.lo + picture.y.hi) / 2});
+            picture.plane.placeAt({(picture.x.lo + picture.x.hi) / 2, (picture.y.lo + picture.y.hi) / 2});
         const auto& [at, right, up] = picture.plane;
         const FlatAxes axes{right, up, {glm::length(right * world.scale), glm::length(up * world.scale)}};
         scene.camera = flatCamera(axes, middle, picture.y.hi - picture.y.lo, world);
@@ -61,7 +61,7 @@ vis::Scene planeScene(const ViewContext& context, const PlanePicture& picture, c
         const glm::dvec3 normal = worldNormal(picture.plane.plane().normal, world);
         layer.normal = glm::vec3(normal);
         const double reach = glm::dot(glm::abs(normal), world.halfSize);
-        layer.position = reach > 0 ? (glm::dot(normal, world.toWorld(picture.plane.at)) / reach + 1) / 2 : 0.5;
+        layer.position = reach > 0 ? (glm::dot(normal, world.sheetToWorld(picture.plane.at)) / reach + 1) / 2 : 0.5;
     }
     scene.layers = {vis::Layer{"slice", true, layer}};
     picture.shows.plain ? scene.lenses.clear() : addInnerSlices(scene, context.session, layer);
@@ -170,14 +170,15 @@ void drawPlaneAxes(const PlanePicture& picture, const PlotFrame& plot, const Pla
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (axes.below)
         drawAxis(draw, plot, AxisSide::Bottom, picture.right.name, picture.right.unit.name, axes.min.x,
-                 std::min(axes.max.x, plot.max.x + em() * 4), {.inlineTitle = true});
-    const std::string note = axisNote(AxisSide::Left, plot.y, plot.height()), unit = picture.up.unit.name;
+                 std::min(axes.max.x, plot.max.x + em() * 4), {.inlineTitle = true, .scale = picture.right.scale()});
+    const std::string note = axisNote(AxisSide::Left, plot.y, plot.height(), picture.up.scale()),
+                      unit = picture.up.unit.name;
     const auto fits = [&](const std::string& text) {
         return ImGui::CalcTextSize((note.empty() ? text : text + "  " + note).c_str()).x <= axes.title;
     };
     const bool whole = fits(titleWithUnit(picture.up.name, unit)), named = whole || fits(picture.up.name);
     drawAxis(draw, plot, AxisSide::Left, named ? picture.up.name : "", whole ? unit : "", axes.min.y, axes.max.y,
-             {.inlineTitle = !axes.beside, .room = axes.left});
+             {.inlineTitle = !axes.beside, .room = axes.left, .scale = picture.up.scale()});
 }
 
 void drawPlaneLegend(const ViewContext& context, const PlanePicture& picture, const Readout& readout, bool named) {

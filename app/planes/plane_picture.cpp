@@ -1,5 +1,6 @@
 #include "app/planes/plane_picture.h"
 
+#include "app/pane/axes3d.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
 
@@ -25,11 +26,22 @@ Range spanOf(const std::vector<double>& values, double least) {
     return {*lo - margin, *hi + margin};
 }
 
-/// Of a direction along an axis its own name, else the other one.
+/// Of a direction along an axis its own name and numbers, else the other one; without numbers where it runs across
+/// several axes of which one is uneven, since then there are none.
 AxisLabel planeLabel(glm::dvec3 direction, const char* other, const volume::DatasetInfo& info, Range span) {
     const glm::dvec3 size = glm::abs(direction);
-    return {std::max({size.x, size.y, size.z}) > kAlong ? directionText(direction) : other,
-            suitableLength(info.lengthUnit, span.hi - span.lo)};
+    AxisLabel label{.name = other, .unit = suitableLength(info.lengthUnit, span.hi - span.lo)};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (size[axis] > kAlong) {
+            label.name = directionText(direction);
+            label.map = info.lattice.axes.of[static_cast<std::size_t>(axis)];
+            label.reversed = direction[axis] < 0;
+            label.blank = false;
+            break;
+        }
+        if (size[axis] > 1 - kAlong && info.lattice.axes[axis]) label.blank = true;
+    }
+    return label;
 }
 
 /// As many samples along both edges as suit their lengths; lengths and times have no proportion.
@@ -37,6 +49,12 @@ glm::ivec2 tableCells(const Session& session, const volume::DatasetInfo& info, g
     const double longer = std::max(edges.x, edges.y);
     if (!(longer > 0) || timeAxisOf(session, info)) return glm::ivec2(kTableCells);
     return glm::max(glm::ivec2(glm::round(edges / longer * static_cast<double>(kTableCells))), glm::ivec2(2));
+}
+
+/// Of places of the sheet.
+std::vector<glm::dvec3> inSpace(std::vector<glm::dvec3> places, const volume::AxisMaps& maps) {
+    for (glm::dvec3& place : places) place = maps.toSpace(place);
+    return places;
 }
 
 void show(PlanePicture& picture, const Session& session, const volume::DatasetInfo& info, const PlaneContent& shows) {
@@ -60,19 +78,21 @@ PlanePicture axisPlane(const Session& session, const volume::DatasetInfo& info, 
                        const PlaneContent& shows) {
     const auto& [right, up, normal] = axes;
     const AxisLabels labels = axisLabels(session, info);
-    const auto& [name, unit] = labels[static_cast<std::size_t>(normal)];
+    const AxisLabel& across = labels[static_cast<std::size_t>(normal)];
+    const LengthUnit& unit = across.unit;
     PlanePicture picture;
-    picture.plane = planeAcross(right, up, normal, position);
+    picture.maps = info.lattice.axes;
+    picture.plane = planeAcross(right, up, normal, picture.maps.toSheet(normal, position));
     picture.axes = axes;
     picture.x = {info.bounds.lo[right], info.bounds.hi[right]};
     picture.y = {info.bounds.lo[up], info.bounds.hi[up]};
     const glm::dvec3 half = vis::worldFrame(info, session.stretch).halfSize;
     picture.size = 2.0 * glm::dvec2(half[right], half[up]);
-    picture.corners = planeSection(picture.plane.plane(), info.bounds);
+    picture.corners = inSpace(planeSection(picture.plane.plane(), info.bounds), picture.maps);
     picture.right = labels[static_cast<std::size_t>(right)];
     picture.up = labels[static_cast<std::size_t>(up)];
-    picture.place = name + " = " +
-                    formatQuantity(position * unit.perUnit, unit.name, info.bounds.size()[normal] * unit.perUnit / 100);
+    const double digits = tellingLength(info, normal, picture.maps.toSpace(picture.plane.at), 0.01) * unit.perUnit;
+    picture.place = across.name + " = " + formatQuantity(position * unit.perUnit, unit.name, digits);
     show(picture, session, info, shows);
     return picture;
 }
@@ -82,10 +102,11 @@ PlanePicture tiltedPlane(const Session& session, const volume::DatasetInfo& info
     const double size = glm::length(info.bounds.size()), same = kSameOffset * std::max(size, 1e-300);
     const FlatAxes axes = flatAxes(normal, vis::worldFrame(info, session.stretch));
     const glm::dvec3 way = unitNormal(normal);
-    const double offset = std::round(glm::dot(way, session.cursor) / same) * same;
     PlanePicture picture;
+    picture.maps = info.lattice.axes;
+    const double offset = std::round(glm::dot(way, picture.maps.toSheet(session.cursor)) / same) * same;
     picture.plane = {way * offset, axes.right, axes.up};
-    picture.corners = planeSection(picture.plane.plane(), info.bounds);
+    picture.corners = inSpace(planeSection(picture.plane.plane(), info.bounds), picture.maps);
     std::vector<double> across, upwards;
     for (const glm::dvec3& corner : picture.corners.empty() ? std::vector{session.cursor} : picture.corners) {
         across.push_back(picture.along(corner).x);
@@ -97,8 +118,12 @@ PlanePicture tiltedPlane(const Session& session, const volume::DatasetInfo& info
     picture.right = planeLabel(axes.right, "u", info, picture.x);
     picture.up = planeLabel(axes.up, "v", info, picture.y);
     const LengthUnit unit = suitableLength(info.lengthUnit, size);
-    picture.place = "across " + directionText(way) + " at " +
-                    formatQuantity(offset * unit.perUnit, unit.name, size * unit.perUnit / 1000);
+    const AxisLabel normalTo = planeLabel(way, "", info, {0, size});
+    picture.place = "across " + directionText(way);
+    if (!normalTo.blank)
+        picture.place +=
+            " at " + formatQuantity(AxisScale{normalTo.map, 1, normalTo.reversed}.number(offset) * unit.perUnit,
+                                    unit.name, size * unit.perUnit / 1000);
     show(picture, session, info, shows);
     return picture;
 }
@@ -114,6 +139,14 @@ std::string axesText(const PlanePicture& picture) {
     const auto [right, up] = axisTexts(picture);
     const bool named = right != picture.right.name, both = named && up != picture.up.name;
     return both ? right + ", " + up : named ? right : up != picture.up.name ? up : "";
+}
+
+std::string unevenText(const PlanePicture& picture) {
+    volume::AxisMaps along = picture.maps;
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::abs(picture.plane.right[axis]) < 1 - kAlong && std::abs(picture.plane.up[axis]) < 1 - kAlong)
+            along.of[static_cast<std::size_t>(axis)] = nullptr;
+    return stretchText(glm::dvec3(1), along);
 }
 
 ContourQuery contourQuery(const PlanePicture& picture) {
@@ -132,16 +165,17 @@ glm::dvec3 nearestPlace(const PlanePicture& picture, const volume::Box& box, glm
     if (picture.axes)
         return picture.placeAt(
             {std::clamp(along.x, picture.x.lo, picture.x.hi), std::clamp(along.y, picture.y.lo, picture.y.hi)});
-    return nearestInPlane(picture.plane.plane(), box, picture.placeAt(along));
+    return picture.maps.toSpace(nearestInPlane(picture.plane.plane(), box, picture.plane.placeAt(along)));
 }
 
 void stepAcross(Session& session, const volume::DatasetInfo& info, const PlanePicture& picture, double samples) {
     glm::dvec3 way = picture.plane.plane().normal;
     if (picture.axes) way = glm::abs(way); // towards larger coordinates
     const double cell = info.lattice.kind == volume::LatticeKind::BCC ? 0.5 : 1;
-    const glm::dvec3 to = session.cursor + way * (samples * cell / glm::length(way / info.lattice.spacing));
-    session.cursor =
-        picture.axes ? glm::clamp(to, info.bounds.lo, info.bounds.hi) : nearestInPlane({way, to}, info.bounds, to);
+    const glm::dvec3 from = picture.maps.toSheet(session.cursor);
+    const glm::dvec3 to = from + way * (samples * cell / glm::length(way / info.lattice.spacing));
+    session.cursor = picture.maps.toSpace(picture.axes ? glm::clamp(to, info.bounds.lo, info.bounds.hi)
+                                                       : nearestInPlane({way, to}, info.bounds, to));
 }
 
 } // namespace tessera::app

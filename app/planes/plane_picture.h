@@ -23,10 +23,11 @@ struct PlaneContent {
 
 struct PlanePicture {
     PicturePlane plane;
+    volume::AxisMaps maps;           ///< from the sheet, of which the plane is and what the picture spans, to space
     std::optional<SliceAxes> axes;   ///< of the data, along the picture and across; nothing where the plane is tilted
     Range x, y;                      ///< what the picture spans: distances from the data's origin along right and up
     glm::dvec2 size{0};              ///< what that is in the stretched world (vis/scene/camera.h)
-    std::vector<glm::dvec3> corners; ///< of the part in the box, in order around it
+    std::vector<glm::dvec3> corners; ///< of the part in the box, in order around it; physical
     AxisLabel right, up;             ///< names and units along the picture: "u" and "v" where tilted
     AxisLabels positions;            ///< the same of the axes of the data
     std::string place;               ///< where it lies: "z = 3.1 mm", "across 0.71 x + 0.71 z at 12.3 mm"
@@ -41,8 +42,8 @@ struct PlanePicture {
     std::vector<PlaneSection> sections;
     std::optional<glm::dvec2> cursor; ///< the cross-hair, along right and up
 
-    glm::dvec2 along(glm::dvec3 physical) const { return plane.along(physical); }
-    glm::dvec3 placeAt(glm::dvec2 at) const { return plane.placeAt(at); }
+    glm::dvec2 along(glm::dvec3 physical) const { return plane.along(maps.toSheet(physical)); }
+    glm::dvec3 placeAt(glm::dvec2 at) const { return maps.toSpace(plane.placeAt(at)); } ///< physical
     glm::dvec2 perUnit() const { return {right.unit.perUnit, up.unit.perUnit}; }
     /// What the picture spans, in the units of its axes.
     Range shownX() const { return {x.lo * right.unit.perUnit, x.hi * right.unit.perUnit}; }
@@ -61,13 +62,16 @@ std::array<std::string, 2> axisTexts(const PlanePicture& picture);
 /// Those that are none of the data's; "" where both are.
 std::string axesText(const PlanePicture& picture);
 
+/// Which of the axes that run along the picture are drawn by cells: "z by cells"; "" where none is.
+std::string unevenText(const PlanePicture& picture);
+
 /// The contour lines of the picture.
 ContourQuery contourQuery(const PlanePicture& picture);
 
 /// What the legend says of the contour lines; "" where the renderer draws them or none are wanted.
 std::string contourNote(const volume::DatasetInfo& info, const PlanePicture& picture);
 
-/// The place in a plane nearest to `along` that lies in the box.
+/// The place in a plane nearest to `along` that lies in the box; physical.
 glm::dvec3 nearestPlace(const PlanePicture& picture, const volume::Box& box, glm::dvec2 along);
 
 /// Moves the session's cursor across the plane by samples: along the axis it is perpendicular to, else along its

@@ -4,6 +4,7 @@
 #include "vis/shapes/flow_geometry.h"
 #include "volume/bricks/source_at_time.h"
 #include "volume/mesh/isosurface.h"
+#include "volume/sources/sheet_source.h"
 
 #include <limits>
 #include <optional>
@@ -35,7 +36,7 @@ FlowQuery flowQuery(const vis::FlowLayer& layer, const Session& session, const v
     query.layer.style = {}; // does not change the geometry
     if (layer.seedBrushed && session.selection.active()) {
         query.brushes.brushes = session.selection.brushes;
-        if (vis::selectsLens(session.selection)) query.lenses = lensSpace(session, info);
+        query.lenses = brushSpace(session, info);
     }
     return query;
 }
@@ -62,8 +63,13 @@ SharedGeometry make(const SurfaceQuery& query, const SharedSource& source, int l
     return geometry;
 }
 
+/// The same as it is drawn: on the sheet of the axes.
+SharedGeometry makeDrawn(const SurfaceQuery& query, const SharedSource& source, int level, const Progress& progress) {
+    return make(query, volume::sheetSource(source), level, progress);
+}
+
 /// Null where there is nothing to show.
-SharedGeometry make(const FlowQuery& query, const SharedSource& source, int, const Progress& progress) {
+SharedGeometry makeDrawn(const FlowQuery& query, const SharedSource& source, int, const Progress& progress) {
     const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
     const vis::DoiFunction interest(query.brushes, query.lenses);
     return vis::makeFlow(*shown.source, query.layer, shown.time, query.stretch, progress, &interest);
@@ -129,7 +135,7 @@ std::vector<vis::GeometryLayer> AsyncGeometry::get(ViewContext& context, const s
         auto made = query_.answer(
             context, context.source, optionsFor(layer, pane + ":geometry" + std::to_string(i), *context.source), *query,
             [](const SharedSource& source, const GeometryQuery& asked, int level, const Progress& progress) {
-                return std::visit([&](const auto& of) { return make(of, source, level, progress); }, asked);
+                return std::visit([&](const auto& of) { return makeDrawn(of, source, level, progress); }, asked);
             },
             [](const GeometryQuery& former, const GeometryQuery& asked) { return former.index() == asked.index(); });
         if (!made || !made->result || (!query_.failure().empty() && !(made->query == *query))) continue;

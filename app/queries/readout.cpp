@@ -108,10 +108,11 @@ std::vector<std::string> placeTexts(const ViewContext& context) {
     std::vector<std::string> at;
     std::string unitNow;
     for (int axis = 2; axis >= 0; --axis) {
-        const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
+        const LengthUnit& unit = labels[static_cast<std::size_t>(axis)].unit;
+        const glm::dvec3 cursor = context.session.cursor;
         std::string text =
-            name + " " +
-            formatNumber(context.session.cursor[axis] * unit.perUnit, info.bounds.size()[axis] * unit.perUnit / 200);
+            labels[static_cast<std::size_t>(axis)].name + " " +
+            formatNumber(cursor[axis] * unit.perUnit, tellingLength(info, axis, cursor, 1.0 / 200) * unit.perUnit);
         if (unit.name != unitNow) text += " " + prettyUnit(unit.name);
         unitNow = unit.name;
         at.insert(at.begin(), text);
@@ -307,8 +308,9 @@ std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, 
     const AxisLabels labels = axisLabels(session, info);
     for (int axis = 0; axis < 3; ++axis) {
         const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
-        const auto& [name, unit] = labels[static_cast<std::size_t>(axis)];
-        put(name, time ? unit.name : info.lengthUnit, session.cursor[axis] * (time ? unit.perUnit : 1));
+        const AxisLabel& label = labels[static_cast<std::size_t>(axis)];
+        const LengthUnit& unit = label.unit;
+        put(label.name, time ? unit.name : info.lengthUnit, session.cursor[axis] * (time ? unit.perUnit : 1));
     }
     put(info.timeName, info.timeUnit, session.time);
     for (const volume::Quantity& quantity : info.quantities)

@@ -121,7 +121,7 @@ BrushedQuery brushedQuery(const Session& session, const volume::DatasetInfo& inf
     // Enabled brushes take precedence, so that the selection is the same in plots, tables and volumes.
     if (marked && query.selection.brushes.empty())
         query.selection.brushes.push_back({.name = "", .color = {}, .region = vis::LensRegion{}});
-    if (vis::selectsLens(query.selection)) query.lenses = lensSpace(session, info);
+    query.lenses = vis::selectsLens(query.selection) ? lensSpace(session, info) : brushSpace(session, info);
     return query;
 }
 

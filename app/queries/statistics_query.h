@@ -21,7 +21,7 @@ struct BrushedQuery {
     int bins = 96;
     int meanOf = -1;          ///< position in `channels`: see StatisticsQuery
     vis::Selection selection; ///< brushes and how they combine; the rest plays no part
-    vis::LensSpace lenses;    ///< of the brushes that are lenses; empty if none is
+    vis::LensSpace lenses;    ///< what brushes need to select by positions: brushSpace()
     bool operator==(const BrushedQuery&) const = default;
 };
 

@@ -2,6 +2,7 @@
 
 #include "app/pane/view_parts.h"
 #include "volume/bricks/source_at_time.h"
+#include "volume/sources/sheet_source.h"
 
 namespace tessera::app {
 
@@ -29,7 +30,8 @@ std::shared_ptr<const std::vector<double>> AsyncVisibility::get(ViewContext& con
         {channel, context.numbers->grid().levelWithin(kMostSamples), volume::timesAround(info.times, session.time)},
         [](const Source& source, const GridQuery& asked, int, const Progress& progress) {
             const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
-            return volume::readSamples(*shown.source, asked.channel, shown.time, asked.level, progress);
+            return volume::readSamples(*volume::sheetSource(shown.source), asked.channel, shown.time, asked.level,
+                                       progress);
         },
         [](const GridQuery& previous, const GridQuery& asked) { return previous.channel == asked.channel; });
     if (!grid) return nullptr;

@@ -82,6 +82,13 @@ vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info
     return {vis::placeLenses(session.lenses, frame, session.camera, session.cursor), frame};
 }
 
+vis::LensSpace brushSpace(const Session& session, const volume::DatasetInfo& info) {
+    if (vis::selectsLens(session.selection)) return lensSpace(session, info);
+    vis::LensSpace space;
+    space.frame.axes = info.lattice.axes;
+    return space;
+}
+
 std::vector<std::string> paneKeys(const Session& session) {
     std::vector<std::string> keys;
     for (const auto& [key, view] : session.views) keys.push_back(key);

@@ -224,6 +224,9 @@ std::string layerName(const vis::Layer& layer);
 
 /// The session's lenses in the space of its data.
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info);
+/// What brushes need to select by positions: lenses only where brushes are lenses, so that answers to questions about
+/// others hold while the camera moves; the axes where they are uneven.
+vis::LensSpace brushSpace(const Session& session, const volume::DatasetInfo& info);
 
 /// The pane keys of a session, and the name a reader sees for one: "Volume", "Volume 2", ...
 std::vector<std::string> paneKeys(const Session& session);

@@ -44,8 +44,11 @@ std::string regionText(const volume::DatasetInfo& info, const vis::Region& regio
     if (const auto* lens = std::get_if<vis::LensRegion>(&region))
         return lens->lens.empty() ? "all lenses that mark samples" : "inside the lens " + lens->lens;
     const bool box = std::holds_alternative<vis::BoxRegion>(region);
-    const glm::dvec3 radius =
-        box ? std::get<vis::BoxRegion>(region).radius : std::get<vis::SphereRegion>(region).radius;
+    glm::dvec3 radius = box ? std::get<vis::BoxRegion>(region).radius : std::get<vis::SphereRegion>(region).radius;
+    if (const volume::AxisMaps& axes = info.lattice.axes; !box && !axes.isEven()) { // how far it reaches in space
+        const vis::SheetBox ball = vis::sheetBox(std::get<vis::SphereRegion>(region), axes);
+        radius = (axes.toSpace(ball.center + ball.radius) - axes.toSpace(ball.center - ball.radius)) / 2.0;
+    }
     std::string text = box ? "box" : "sphere";
     const LengthUnit unit = suitableLength(info.lengthUnit, 2 * std::max({radius.x, radius.y, radius.z}));
     for (int axis = 0; axis < 3; ++axis) {
@@ -134,16 +137,16 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index, std::
     return removed;
 }
 
-/// Centre and radius of a brush in space.
-struct SpaceShape {
-    bool box = false;
-    glm::dvec3 center{0}, radius{1};
-};
-std::optional<SpaceShape> spaceShape(const vis::Brush& brush) {
-    if (const auto* sphere = std::get_if<vis::SphereRegion>(&brush.region))
-        return SpaceShape{false, sphere->center, sphere->radius};
-    if (const auto* box = std::get_if<vis::BoxRegion>(&brush.region)) return SpaceShape{true, box->center, box->radius};
-    return std::nullopt;
+/// The lines of a brush in space; none of others.
+std::vector<SpaceLine> brushWires(const vis::Brush& brush, const volume::AxisMaps& axes) {
+    std::vector<SpaceLine> lines;
+    if (const auto* sphere = std::get_if<vis::SphereRegion>(&brush.region)) {
+        const vis::SheetBox ball = vis::sheetBox(*sphere, axes);
+        lines = linesInSpace(ballWires(ball.center, ball.radius), axes);
+    }
+    if (const auto* box = std::get_if<vis::BoxRegion>(&brush.region))
+        lines = boxWires(box->center - box->radius, box->center + box->radius);
+    return lines;
 }
 
 } // namespace
@@ -228,10 +231,18 @@ vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, b
     const glm::dvec3 radii = radius / session.stretch;
     vis::Brush brush;
     brush.name = box ? "box" : "sphere";
-    if (box)
-        brush.region = vis::BoxRegion{.center = session.cursor, .radius = radii};
-    else
-        brush.region = vis::SphereRegion{.center = session.cursor, .radius = radii, .soft = 0.1};
+    if (box) { // as large in the picture wherever it is
+        vis::BoxRegion region{.center = session.cursor, .radius = radii};
+        for (int axis = 0; axis < 3; ++axis)
+            if (const volume::AxisMap* map = info.lattice.axes[axis]) {
+                const double middle = map->toSheet(session.cursor[axis]);
+                const double lo = map->toSpace(middle - radii[axis]), hi = map->toSpace(middle + radii[axis]);
+                region.center[axis] = (lo + hi) / 2;
+                region.radius[axis] = (hi - lo) / 2;
+            }
+        brush.region = region;
+    }
+    if (!box) brush.region = vis::SphereRegion{.center = session.cursor, .radius = radii, .soft = 0.1};
     return brush;
 }
 
@@ -269,11 +280,8 @@ void drawBrushMenu(ViewContext& context) {
 
 void drawSpaceBrushes(ImDrawList& draw, const SpaceFrame& frame, const vis::Selection& selection) {
     for (const vis::Brush& brush : selection.brushes) {
-        const auto shape = spaceShape(brush);
-        if (!shape) continue;
         const ImU32 color = brushColor(brush, brush.enabled ? 0.8f : 0.3f);
-        for (const auto& [a, b] : shape->box ? boxWires(shape->center - shape->radius, shape->center + shape->radius)
-                                             : ballWires(shape->center, shape->radius)) {
+        for (const auto& [a, b] : brushWires(brush, frame.world.axes)) {
             const auto from = frame.pixel(a), to = frame.pixel(b);
             if (from && to) draw.AddLine(*from, *to, color, std::max(1.0f, em() * 0.08f));
         }

@@ -39,14 +39,14 @@ std::pair<std::vector<glm::dvec3>, std::vector<glm::dvec3>> rims(const vis::Plac
     return ends;
 }
 
-/// The rims of a cylinder and every `step`th line between them; physical.
+/// The rims of a cylinder and every `step`th line between them; of the sheet, as all that follows.
 std::vector<SpaceLine> cylinderWires(const vis::PlacedClip& cylinder, const vis::WorldFrame& world, std::size_t step) {
     const auto [lower, upper] = rims(cylinder);
     std::vector<SpaceLine> lines;
     for (std::size_t i = 0; i < lower.size(); ++i) {
         for (const auto* rim : {&lower, &upper})
-            lines.emplace_back(world.toPhysical((*rim)[i]), world.toPhysical((*rim)[(i + 1) % rim->size()]));
-        if (i % step == 0) lines.emplace_back(world.toPhysical(lower[i]), world.toPhysical(upper[i]));
+            lines.emplace_back(world.worldToSheet((*rim)[i]), world.worldToSheet((*rim)[(i + 1) % rim->size()]));
+        if (i % step == 0) lines.emplace_back(world.worldToSheet(lower[i]), world.worldToSheet(upper[i]));
     }
     return lines;
 }
@@ -72,7 +72,7 @@ std::vector<glm::dvec3> edgesCrossed(const std::vector<SpaceLine>& edges, const 
 /// Where a slice cuts the body.
 std::vector<SpaceLine> bodySection(const vis::PlacedClip& body, const vis::WorldFrame& world,
                                    const PicturePlane& slice) {
-    const glm::dvec3 center = world.toPhysical(body.center), half = body.half / world.scale;
+    const glm::dvec3 center = world.worldToSheet(body.center), half = body.half / world.scale;
     std::vector<glm::dvec3> outline;
     if (body.kind == vis::ClipKind::Box)
         outline = planeSection(slice.plane(), {center - half, center + half});
@@ -85,9 +85,9 @@ std::vector<SpaceLine> bodySection(const vis::PlacedClip& body, const vis::World
     return lines;
 }
 
-/// The lines of the body in space.
+/// The lines of the body.
 std::vector<SpaceLine> bodyWires(const vis::PlacedClip& body, const vis::WorldFrame& world) {
-    const glm::dvec3 center = world.toPhysical(body.center), half = body.half / world.scale;
+    const glm::dvec3 center = world.worldToSheet(body.center), half = body.half / world.scale;
     if (body.kind == vis::ClipKind::Box) return boxWires(center - half, center + half);
     if (body.kind == vis::ClipKind::Sphere) return ballWires(center, body.half.x / world.scale);
     return cylinderWires(body, world, kRimParts / 4);
@@ -136,7 +136,7 @@ void addBody(std::vector<HandledObject>& objects, const Session& session, const 
     object.name = "clip " + std::to_string(index + 1);
     object.color = plotColors().text;
     object.outlined = true;
-    object.lines = bodyWires(body, world);
+    object.lines = linesInSpace(bodyWires(body, world), world.axes);
     object.handles = {{.at = middle, .whole = true, .how = HandleWay::Beyond}};
     for (const auto& [way, reach] : bodyEnds(body))
         object.handles.push_back(
@@ -150,13 +150,14 @@ void addBody(std::vector<HandledObject>& objects, const Session& session, const 
         object.lines.push_back(arrow.front());
     }
     object.section = [body, world, arrow](const PicturePlane& slice) {
-        std::vector<SpaceLine> lines = bodySection(body, world, slice);
+        std::vector<SpaceLine> lines = linesInSpace(bodySection(body, world, slice), world.axes);
         if (!lines.empty()) lines.insert(lines.end(), arrow.begin(), arrow.end());
         return lines;
     };
-    object.move = [index, middle, bounds = info.bounds](Session& edited, std::size_t handle, glm::dvec3 place) {
+    object.move = [index, middle, bounds = info.bounds, axes = world.axes](Session& edited, std::size_t handle,
+                                                                           glm::dvec3 place) {
         vis::Clip& own = edited.clips[index];
-        const vis::WorldFrame frame = vis::worldFrame(bounds, edited.stretch);
+        const vis::WorldFrame frame = vis::worldFrame(bounds, edited.stretch, axes);
         if (handle == kArrowHandle) {
             own.axis = glm::vec3(arrowWay(frame, middle, place));
         } else if (handle > 0) {

@@ -14,13 +14,13 @@ namespace {
 
 constexpr double kLeastRadius = 1e-4; ///< share of the data's edge that no radius becomes smaller than
 
-/// The middle of something, and the ends of its three radii.
-std::vector<SpaceHandle> radialHandles(glm::dvec3 center, glm::dvec3 radius) {
-    std::vector<SpaceHandle> handles{{.at = center, .whole = true}};
+/// The middle of something, and the ends of its three radii; `axes`: center and radius are of their sheet.
+std::vector<SpaceHandle> radialHandles(glm::dvec3 center, glm::dvec3 radius, const volume::AxisMaps& axes = {}) {
+    std::vector<SpaceHandle> handles{{.at = axes.toSpace(center), .whole = true}};
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 end = center;
         end[axis] += radius[axis];
-        handles.push_back({.at = end, .axis = axis});
+        handles.push_back({.at = axes.toSpace(end), .axis = axis});
     }
     return handles;
 }
@@ -45,14 +45,36 @@ void moveRake(vis::FlowLayer& flow, glm::vec3 middle) {
     flow.to = glm::clamp(flow.to + by, glm::vec3(0), glm::vec3(1));
 }
 
+/// Shares of the box on its sheet, in which seeds are placed (vis/shapes/flow_geometry.h): lines of seeds are straight
+/// in space, so their sheet is that of even axes.
+struct RakeShares {
+    volume::AxisMaps axes;
+    glm::dvec3 lo, size;
+
+    glm::vec3 of(glm::dvec3 place) const { return glm::vec3((axes.toSheet(place) - lo) / size); }
+    glm::dvec3 placeOf(glm::dvec3 share) const { return lo + share * size; } ///< of one in space
+    /// Changes a rake whose corners are such shares meanwhile.
+    template <class Change> void edit(vis::FlowLayer& flow, const Change& change) const {
+        if (axes.isEven()) return change(flow);
+        for (glm::vec3* corner : {&flow.from, &flow.to}) *corner = of(placeOf(*corner));
+        change(flow);
+        for (glm::vec3* corner : {&flow.from, &flow.to})
+            *corner = glm::vec3((axes.toSpace(placeOf(*corner)) - lo) / size);
+    }
+};
+
 void addRake(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
              std::size_t index) {
     const vis::Layer& layer = session.layers[index];
     const auto* flow = std::get_if<vis::FlowLayer>(&layer.technique);
     const glm::dvec3 size = info.bounds.size();
     if (!flow || !layer.visible || !(std::min({size.x, size.y, size.z}) > 0)) return;
+    const bool line = flow->seeds == volume::SeedShape::Line;
+    const RakeShares shares{line ? volume::AxisMaps{} : info.lattice.axes, info.bounds.lo, size};
+    const volume::AxisMaps& axes = shares.axes;
     const auto physical = [&](glm::dvec3 share) { return info.bounds.lo + share * size; };
-    const glm::dvec3 from = physical(flow->from), to = physical(flow->to), middle = 0.5 * (from + to);
+    const glm::dvec3 from = physical(flow->from), to = physical(flow->to);
+    const glm::dvec3 middle = axes.toSpace(0.5 * (axes.toSheet(from) + axes.toSheet(to)));
     HandledObject object;
     object.key = "rake " + std::to_string(index);
     object.task = SceneTask::Layers;
@@ -60,25 +82,27 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
     object.name = layerName(layer);
     object.color = plotColors().text;
     object.outlined = true;
-    const auto share = [lo = info.bounds.lo, size](glm::dvec3 place) { return glm::vec3((place - lo) / size); };
-    const auto whole = [index, share](Session& edited, glm::dvec3 place) {
-        moveRake(flowAt(edited, index), share(place));
+    const auto whole = [index, shares](Session& edited, glm::dvec3 place) {
+        shares.edit(flowAt(edited, index), [&](vis::FlowLayer& own) { moveRake(own, shares.of(place)); });
     };
     if (flow->seeds == volume::SeedShape::Sphere) {
-        object.handles = radialHandles(middle, glm::abs(to - from) * 0.5);
-        object.lines = ballWires(middle, glm::abs(to - from) * 0.5);
-        object.move = [index, share, whole](Session& edited, std::size_t handle, glm::dvec3 place) {
+        // A ball of the picture, in the box between both corners.
+        const glm::dvec3 a = axes.toSheet(from), b = axes.toSheet(to), reach = glm::abs(b - a) * 0.5;
+        object.handles = radialHandles(0.5 * (a + b), reach, axes);
+        object.lines = linesInSpace(ballWires(0.5 * (a + b), reach), axes);
+        object.move = [index, shares, whole](Session& edited, std::size_t handle, glm::dvec3 place) {
             if (handle == 0) return whole(edited, place);
-            vis::FlowLayer& own = flowAt(edited, index);
-            const auto axis = static_cast<int>(handle) - 1;
-            const float center = 0.5f * (own.from[axis] + own.to[axis]),
-                        radius = std::max(std::abs(share(place)[axis] - center), float(kLeastRadius));
-            own.from[axis] = std::max(0.0f, center - radius);
-            own.to[axis] = std::min(1.0f, center + radius);
+            shares.edit(flowAt(edited, index), [&](vis::FlowLayer& own) {
+                const auto axis = static_cast<int>(handle) - 1;
+                const float center = 0.5f * (own.from[axis] + own.to[axis]),
+                            radius = std::max(std::abs(shares.of(place)[axis] - center), float(kLeastRadius));
+                own.from[axis] = std::max(0.0f, center - radius);
+                own.to[axis] = std::min(1.0f, center + radius);
+            });
         };
     } else if (flow->seeds == volume::SeedShape::Plane) {
-        const int across = thinnest(glm::abs((to - from) * session.stretch)), u = (across + 1) % 3,
-                  v = (across + 2) % 3;
+        const int across = thinnest(glm::abs((axes.toSheet(to) - axes.toSheet(from)) * session.stretch)),
+                  u = (across + 1) % 3, v = (across + 2) % 3;
         object.handles = {{.at = middle, .whole = true}};
         std::vector<glm::dvec3> corners;
         for (const int corner : {0, 1, 3, 2}) { // around
@@ -89,30 +113,31 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
             corners.push_back(at);
         }
         for (std::size_t i = 0; i < 4; ++i) object.lines.emplace_back(corners[i], corners[(i + 1) % 4]);
-        object.move = [index, share, across, u, v](Session& edited, std::size_t handle, glm::dvec3 place) {
-            vis::FlowLayer& own = flowAt(edited, index);
-            const glm::vec3 at = share(place);
-            if (handle == 0) { // a plane has no thickness once it is moved
-                own.from[across] = own.to[across] = at[across];
-                return moveRake(own, at);
-            }
-            static constexpr int kCorner[] = {0, 1, 3, 2};
-            const int corner = kCorner[handle - 1];
-            (corner & 1 ? own.to : own.from)[u] = at[u];
-            (corner & 2 ? own.to : own.from)[v] = at[v];
+        object.move = [index, shares, across, u, v](Session& edited, std::size_t handle, glm::dvec3 place) {
+            shares.edit(flowAt(edited, index), [&](vis::FlowLayer& own) {
+                const glm::vec3 at = shares.of(place);
+                if (handle == 0) { // a plane has no thickness once it is moved
+                    own.from[across] = own.to[across] = at[across];
+                    return moveRake(own, at);
+                }
+                static constexpr int kCorner[] = {0, 1, 3, 2};
+                const int corner = kCorner[handle - 1];
+                (corner & 1 ? own.to : own.from)[u] = at[u];
+                (corner & 2 ? own.to : own.from)[v] = at[v];
+            });
         };
     } else {
         const bool everything = flow->from == glm::vec3(0) && flow->to == glm::vec3(1);
         object.handles = {{.at = from}, {.at = to}};
         if (!everything) object.handles.push_back({.at = middle, .whole = true}); // else there is no room
-        if (flow->seeds == volume::SeedShape::Line)
+        if (line)
             object.lines = {{from, to}};
         else
             object.lines = boxWires(from, to);
-        object.move = [index, share, whole](Session& edited, std::size_t handle, glm::dvec3 place) {
+        object.move = [index, shares, whole](Session& edited, std::size_t handle, glm::dvec3 place) {
             if (handle == 2) return whole(edited, place);
-            vis::FlowLayer& own = flowAt(edited, index);
-            (handle == 0 ? own.from : own.to) = share(place);
+            shares.edit(flowAt(edited, index),
+                        [&](vis::FlowLayer& own) { (handle == 0 ? own.from : own.to) = shares.of(place); });
         };
     }
     objects.push_back(std::move(object));
@@ -130,15 +155,19 @@ void addBrush(std::vector<HandledObject>& objects, const Session& session, const
     object.entry = static_cast<int>(index);
     object.name = brush.name;
     object.color = brushColor(brush);
-    object.handles = sphere ? radialHandles(sphere->center, sphere->radius) : radialHandles(box->center, box->radius);
-    object.move = [index, size = info.bounds.size()](Session& edited, std::size_t handle, glm::dvec3 place) {
+    // Boxes are those of space, balls those of the picture around their middle.
+    const volume::AxisMaps axes = sphere ? info.lattice.axes : volume::AxisMaps{};
+    object.handles = sphere ? radialHandles(axes.toSheet(sphere->center), sphere->radius, axes)
+                            : radialHandles(box->center, box->radius);
+    object.move = [index, axes, size = info.bounds.size()](Session& edited, std::size_t handle, glm::dvec3 place) {
         const auto change = [&](auto& region) {
             if (handle == 0) {
                 region.center = place;
                 return;
             }
             const auto axis = static_cast<int>(handle) - 1;
-            region.radius[axis] = std::max(std::abs(place[axis] - region.center[axis]), kLeastRadius * size[axis]);
+            const double away = axes.toSheet(axis, place[axis]) - axes.toSheet(axis, region.center[axis]);
+            region.radius[axis] = std::max(std::abs(away), kLeastRadius * size[axis]);
         };
         vis::Region& region = edited.selection.brushes[index].region;
         if (auto* ball = std::get_if<vis::SphereRegion>(&region)) change(*ball);

@@ -236,7 +236,7 @@ LensPicture lensesInSpace(const SpaceFrame& frame, const Session& session) {
 bool cutsLens(const PlaneFrame& frame, const vis::PlacedLens& lens) {
     const glm::dvec3 right = glm::normalize(frame.plane.right * frame.world.scale),
                      up = glm::normalize(frame.plane.up * frame.world.scale);
-    return !lensSection(lens, frame.world.toWorld(frame.plane.at), right, up).empty();
+    return !lensSection(lens, frame.world.sheetToWorld(frame.plane.at), right, up).empty();
 }
 
 LensHandles lensHandles(const PlaneFrame& frame, const vis::PlacedLens& lens) {
@@ -255,7 +255,7 @@ int lensUnder(const PlaneFrame& frame, const Session& session, ImVec2 at) {
     for (int i = static_cast<int>(session.lenses.size()) - 1; i >= 0; --i) {
         const auto lens = placed(frame.world, session, i);
         if (!lens) continue;
-        if (lens->radius(frame.world.toWorld(frame.plane.placeAt(frame.along(at)))) < 1) return i;
+        if (lens->radius(frame.world.sheetToWorld(frame.plane.placeAt(frame.along(at)))) < 1) return i;
         const bool onDot = distance(frame.pixel(frame.world.toPhysical(lens->center)), at) < em() * kGrip;
         if (onDot && cutsLens(frame, *lens)) return i;
     }
@@ -263,18 +263,15 @@ int lensUnder(const PlaneFrame& frame, const Session& session, ImVec2 at) {
 }
 
 LensPicture lensesInSlice(const PlaneFrame& frame, const Session& session) {
-    return {.world = frame.world,
-            .bounds = frame.bounds,
-            .handles =
-                [&frame](const vis::PlacedLens& lens) {
-                    return cutsLens(frame, lens) ? lensHandles(frame, lens) : LensHandles{};
-                },
-            .under = [&frame, &session](ImVec2 at) { return lensUnder(frame, session, at); },
-            .dragged =
-                [&frame](glm::dvec3 from, ImVec2 start, ImVec2 mouse) {
-                    const glm::dvec2 by = frame.along(mouse) - frame.along(start);
-                    return from + frame.plane.right * by.x + frame.plane.up * by.y;
-                }};
+    return {
+        .world = frame.world,
+        .bounds = frame.bounds,
+        .handles =
+            [&frame](const vis::PlacedLens& lens) {
+                return cutsLens(frame, lens) ? lensHandles(frame, lens) : LensHandles{};
+            },
+        .under = [&frame, &session](ImVec2 at) { return lensUnder(frame, session, at); },
+        .dragged = [&frame](glm::dvec3 from, ImVec2 start, ImVec2 mouse) { return frame.moved(from, start, mouse); }};
 }
 
 void drawHandlesOf(ImDrawList& draw, const LensDrag& drag, const LensHandles& handles, const Session& session,
@@ -321,9 +318,7 @@ bool followPointer(Session& session, const SpaceFrame& frame, bool hovered) {
 }
 
 bool followPointer(Session& session, const PlaneFrame& frame, bool hovered) {
-    const auto to = [&](const vis::Lens&) {
-        return std::optional(frame.plane.placeAt(frame.along(ImGui::GetIO().MousePos)));
-    };
+    const auto to = [&](const vis::Lens&) { return std::optional(frame.placeAt(ImGui::GetIO().MousePos)); };
     const auto under = [&](ImVec2 at) { return lensUnder(frame, session, at); };
     return hovered && followWith(session, frame.bounds, under, to);
 }

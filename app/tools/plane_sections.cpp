@@ -19,7 +19,7 @@ constexpr double kLensReach = 4;                ///< world units: no lens is lar
 } // namespace
 
 // In the space where it is round, a circle around the place nearest to its middle.
-std::vector<glm::dvec3> ballSection(const vis::SphereRegion& ball, const PicturePlane& plane) {
+std::vector<glm::dvec3> ballSection(const vis::SheetBox& ball, const PicturePlane& plane) {
     const glm::dvec3 first = glm::normalize(plane.right / ball.radius);
     const glm::dvec3 slant = plane.up / ball.radius, second = glm::normalize(slant - first * glm::dot(slant, first));
     const glm::dvec3 to = (plane.at - ball.center) / ball.radius;
@@ -69,11 +69,15 @@ std::vector<PlaneSection> planeSections(const Session& session, const volume::Da
         for (const glm::dvec3& point : points) section.outline.push_back(plane.along(point));
         return &section;
     };
+    const volume::AxisMaps& axes = info.lattice.axes;
     for (const vis::Brush& brush : session.selection.brushes) {
         PlaneSection* made = nullptr;
-        if (const auto* ball = std::get_if<vis::SphereRegion>(&brush.region)) made = add(ballSection(*ball, plane));
-        if (const auto* box = std::get_if<vis::BoxRegion>(&brush.region))
-            made = add(planeSection(plane.plane(), {box->center - box->radius, box->center + box->radius}));
+        if (const auto* ball = std::get_if<vis::SphereRegion>(&brush.region))
+            made = add(ballSection(vis::sheetBox(*ball, axes), plane));
+        if (const auto* box = std::get_if<vis::BoxRegion>(&brush.region)) {
+            const vis::SheetBox drawn = vis::sheetBox(*box, axes);
+            made = add(planeSection(plane.plane(), {drawn.center - drawn.radius, drawn.center + drawn.radius}));
+        }
         if (!made) continue;
         made->color = brush.color;
         made->faint = !brush.enabled;
@@ -81,13 +85,13 @@ std::vector<PlaneSection> planeSections(const Session& session, const volume::Da
     const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     const glm::dvec3 right = glm::normalize(plane.right * world.scale), up = glm::normalize(plane.up * world.scale);
     eachLens(session, world, [&](int, const vis::Lens& lens, const vis::PlacedLens& placed) {
-        std::vector<glm::dvec3> points = lensSection(placed, world.toWorld(plane.at), right, up);
-        for (glm::dvec3& point : points) point = world.toPhysical(point);
+        std::vector<glm::dvec3> points = lensSection(placed, world.sheetToWorld(plane.at), right, up);
+        for (glm::dvec3& point : points) point = world.worldToSheet(point);
         PlaneSection* const made = add(points);
         if (!made) return;
         made->color = lens.color;
         made->dashed = true;
-        made->middle = plane.along(world.toPhysical(placed.center));
+        made->middle = plane.along(world.worldToSheet(placed.center));
     });
     return sections;
 }

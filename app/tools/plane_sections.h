@@ -20,8 +20,8 @@ struct PlaneSection {
     std::optional<glm::dvec2> middle = {}; ///< of a lens, also where it is before or behind the plane
 };
 
-/// Where a plane cuts a ball of three radii, in order around it; none where it misses the ball.
-std::vector<glm::dvec3> ballSection(const vis::SphereRegion& ball, const PicturePlane& plane);
+/// Where a plane cuts a ball of three radii, in order around it, on the sheet; none where it misses the ball.
+std::vector<glm::dvec3> ballSection(const vis::SheetBox& ball, const PicturePlane& plane);
 
 /// The outline of a lens in a plane through `at`, around the place where the lens is deepest: world points, none where
 /// the plane misses it. `right` and `up` (world, length 1) are at right angles.

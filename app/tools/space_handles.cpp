@@ -28,7 +28,7 @@ const HandledObject* findObject(const std::vector<HandledObject>& objects, const
     return found == objects.end() ? nullptr : &*found;
 }
 
-/// The direction, physical, in which alone a dot changes the size of something.
+/// The direction, on the sheet, in which alone a dot changes the size of something.
 std::optional<glm::dvec3> railOf(const SpaceHandle& handle) {
     if (handle.axis < 0)
         return handle.how == HandleWay::Along && !handle.whole ? std::optional(handle.way) : std::nullopt;
@@ -163,17 +163,18 @@ bool isPlane(const HandledObject& object, const PicturePlane& plane, const volum
 }
 
 /// The plane as it crosses a slice: the line of both in the box, and the arrow.
-std::vector<SpaceLine> planeCrossing(const HandledObject& object, const volume::Box& box, const SpacePlane& slice) {
+std::vector<SpaceLine> planeCrossing(const HandledObject& object, const PlaneFrame& frame) {
     std::vector<SpaceLine> lines;
     if (!object.plane) return lines;
-    const std::vector<glm::dvec3> corners = planeSection(*object.plane, box);
+    const SpacePlane slice = frame.plane.plane();
+    const std::vector<glm::dvec3> corners = planeSection(*object.plane, frame.bounds);
     std::vector<glm::dvec3> ends;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const glm::dvec3 from = corners[i], to = corners[(i + 1) % corners.size()];
         const double a = slice.distance(from), b = slice.distance(to);
         if ((a < 0) != (b < 0)) ends.push_back(glm::mix(from, to, a / (a - b)));
     }
-    if (ends.size() == 2) lines.emplace_back(ends[0], ends[1]);
+    if (ends.size() == 2) lines = linesInSpace({{ends[0], ends[1]}}, frame.world.axes);
     if (object.handles.size() > 1) lines.emplace_back(object.handles[0].at, object.handles[1].at);
     return lines;
 }
@@ -199,6 +200,14 @@ std::vector<SpaceLine> boxWires(glm::dvec3 lo, glm::dvec3 hi) {
             b[axis] = hi[axis];
             lines.emplace_back(a, b);
         }
+    return lines;
+}
+
+std::vector<SpaceLine> linesInSpace(std::vector<SpaceLine> lines, const volume::AxisMaps& axes) {
+    for (auto& [from, to] : lines) {
+        from = axes.toSpace(from);
+        to = axes.toSpace(to);
+    }
     return lines;
 }
 
@@ -296,10 +305,11 @@ bool editHandles(HandleDrag& drag, Session& session, const volume::DatasetInfo& 
                         const auto rail = railOf(handle);
                         if (const auto way = rail ? pixelsAlong(frame, *rail) : std::nullopt) {
                             const glm::dvec2 by(mouse.x - drag.start.x, mouse.y - drag.start.y);
-                            return handle.at + *rail * (glm::dot(by, *way) / glm::dot(*way, *way));
+                            const volume::AxisMaps& axes = frame.world.axes;
+                            return axes.toSpace(axes.toSheet(handle.at) +
+                                                *rail * (glm::dot(by, *way) / glm::dot(*way, *way)));
                         }
-                        const glm::dvec2 by = frame.along(mouse) - frame.along(drag.start);
-                        return handle.at + frame.plane.right * by.x + frame.plane.up * by.y;
+                        return frame.moved(handle.at, drag.start, mouse);
                     });
 }
 
@@ -313,7 +323,7 @@ void drawHandles(ImDrawList& draw, const HandleDrag& drag, const SpaceFrame& fra
 void drawHandles(ImDrawList& draw, const HandleDrag& drag, const PlaneFrame& frame, const Session& session,
                  const volume::DatasetInfo& info) {
     for (HandledObject& object : objectsInSlice(session, info, frame.plane)) {
-        if (object.plane) object.lines = planeCrossing(object, info.bounds, frame.plane.plane());
+        if (object.plane) object.lines = planeCrossing(object, frame);
         if (object.section) object.lines = object.section(frame.plane);
         const bool shown = object.plane || (object.section && !object.lines.empty());
         drawObject(draw, drag, object, !shown, inSlice(frame),

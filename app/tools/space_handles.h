@@ -27,6 +27,8 @@ using SpaceLine = std::pair<glm::dvec3, glm::dvec3>;
 /// The edges of a box; circles around a ball of three radii.
 std::vector<SpaceLine> boxWires(glm::dvec3 lo, glm::dvec3 hi);
 std::vector<SpaceLine> ballWires(glm::dvec3 center, glm::dvec3 radius);
+/// Lines on the sheet of uneven axes (volume/field/axis_map.h), as a picture draws them, in space.
+std::vector<SpaceLine> linesInSpace(std::vector<SpaceLine> lines, const volume::AxisMaps& axes);
 
 /// The world place on the line through `from` along `way` (length 1) that follows the mouse; where the line points at
 /// the viewer, upwards is farther along it.
@@ -41,7 +43,7 @@ glm::dvec3 draggedAround(const SpaceFrame& frame, const vis::Camera& camera, glm
 /// How a dot of a 3D picture moves.
 enum class HandleWay {
     Anywhere, ///< in the box of the data
-    Along,    ///< on the line through it along `way`, physical
+    Along,    ///< on the line of the picture through it along `way`, a direction on the sheet
     Around,   ///< at its distance in the world from `way`, a physical place
     Beyond    ///< also outside of the box
 };
@@ -64,8 +66,9 @@ struct HandledObject {
     bool outlined = false; ///< `lines` are to be drawn here, not elsewhere
     std::vector<SpaceHandle> handles;
     std::vector<SpaceLine> lines;
-    std::optional<SpacePlane> plane = {}; ///< the object is one: in slices it is drawn where it crosses them
-    std::optional<SceneTask> task = {};   ///< that has its settings, in entry `entry` of its list
+    std::optional<SpacePlane> plane =
+        {}; ///< the object is one, of the sheet: in slices it is drawn where it crosses them
+    std::optional<SceneTask> task = {}; ///< that has its settings, in entry `entry` of its list
     int entry = -1;
     /// Of a body: the lines that show it in a slice, none where it does not reach.
     std::function<std::vector<SpaceLine>(const PicturePlane& slice)> section = {};

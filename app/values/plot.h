@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/ui/axis_scale.h"
 #include "volume/base/describe.h"
 
 #include <array>
@@ -19,10 +20,8 @@ struct PlotAxis {
     Range range;
     bool numbered = true;  ///< categories are not
     std::string unit = {}; ///< written behind the title, which is cut off before it
-    bool operator==(const PlotAxis& other) const {
-        return title == other.title && range.lo == other.range.lo && range.hi == other.range.hi &&
-               numbered == other.numbered && unit == other.unit;
-    }
+    AxisScale scale = {};  ///< of an axis that is drawn by cells; range and values of the plot are its places
+    bool operator==(const PlotAxis& other) const = default;
 };
 
 struct PlotSeries {

@@ -89,8 +89,9 @@ private:
     }
     void space(BrushTestKind kind, const auto& region) {
         BrushTest& made = test(kind, -1, -1);
-        made.place = {info_.lattice.toCells(region.center), 0};
-        made.inverseRadius = info_.lattice.spacing / region.radius;
+        const SheetBox box = sheetBox(region, info_.lattice.axes);
+        made.place = {info_.lattice.cellsOfSheet(box.center), 0};
+        made.inverseRadius = info_.lattice.spacing / box.radius;
         made.soft = region.soft;
     }
     void encode(const SphereRegion& region) { space(BrushTestKind::Sphere, region); }

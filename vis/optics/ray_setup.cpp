@@ -53,8 +53,13 @@ Plane slicePlane(const SliceLayer& layer, const WorldFrame& frame, glm::dvec3 cu
         plane.normal = glm::dvec3(0);
         plane.normal[static_cast<int>(layer.orientation)] = 1;
     }
-    plane.offset = layer.atCursor ? glm::dot(plane.normal, frame.toWorld(cursor))
-                                  : (2 * layer.position - 1) * glm::dot(glm::abs(plane.normal), frame.halfSize);
+    const auto axis = static_cast<int>(layer.orientation);
+    if (layer.atCursor)
+        plane.offset = glm::dot(plane.normal, frame.toWorld(cursor));
+    else if (layer.orientation != SliceOrientation::Oblique && frame.axes[axis])
+        plane.offset = frame.atShare(glm::dvec3(layer.position))[axis];
+    else
+        plane.offset = (2 * layer.position - 1) * glm::dot(glm::abs(plane.normal), frame.halfSize);
     return plane;
 }
 

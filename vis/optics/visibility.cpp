@@ -11,7 +11,7 @@ namespace tessera::vis {
 std::vector<double> visibilityHistogram(const volume::SampleGrid& grid, const volume::Box& bounds,
                                         const VisibilityQuery& query, const Progress& progress) {
     constexpr double kStepVoxels = 1;
-    const WorldFrame frame = worldFrame(bounds, query.stretch);
+    const WorldFrame frame = worldFrame(bounds, query.stretch, grid.lattice.axes);
     const glm::dvec3 cell = worldCell(grid.lattice, frame);
     const auto rows = std::size_t(query.rays), bins = std::size_t(query.bins);
     std::vector<std::vector<double>> parts(rows);

@@ -27,13 +27,13 @@ struct Piece {
     }
 };
 
-/// Where points of the data lie in the picture.
+/// Where points of the sheet of the data lie in the picture.
 class Placement {
 public:
     Placement(const Camera& camera, const WorldFrame& frame, glm::ivec2 size)
         : frame_(frame), size_(size), toClip_(projectionMatrix(camera, double(size.x) / size.y) * viewMatrix(camera)) {}
 
-    glm::dvec3 world(glm::dvec3 physical) const { return frame_.toWorld(physical); }
+    glm::dvec3 world(glm::dvec3 sheet) const { return frame_.sheetToWorld(sheet); }
     glm::dvec4 clip(glm::dvec3 world) const { return toClip_ * glm::dvec4(world, 1); }
     /// A position of clip space with x and y in pixels, times w.
     glm::dvec4 pixels(glm::dvec4 clip) const {

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <utility>
 
 namespace tessera::vis {
 
@@ -44,7 +45,7 @@ glm::vec3 trackball(glm::vec2 ndc) {
 
 } // namespace
 
-WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch) {
+WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch, volume::AxisMaps axes) {
     const glm::dvec3 edges = glm::max(bounds.size(), glm::dvec3(0)) * stretch;
     const double longest = std::max({edges.x, edges.y, edges.z});
     WorldFrame frame;
@@ -52,18 +53,36 @@ WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch) {
     frame.scale = longest > 0 ? stretch / longest : stretch;
     frame.offset = -bounds.center() * frame.scale;
     frame.halfSize = longest > 0 ? edges / longest * 0.5 : glm::dvec3(0);
+    frame.axes = std::move(axes);
     return frame;
 }
 
 WorldFrame worldFrame(const volume::DatasetInfo& info, glm::dvec3 stretch) {
-    WorldFrame frame = worldFrame(info.bounds, stretch);
-    frame.axes = info.lattice.axes;
-    return frame;
+    return worldFrame(info.bounds, stretch, info.lattice.axes);
 }
 
 glm::dmat4 viewMatrix(const Camera& camera) {
     const glm::dmat4 toTarget = glm::translate(glm::dmat4(1), glm::dvec3(0, 0, -camera.distance));
     return glm::translate(toTarget * glm::mat4_cast(orientation(camera)), -glm::dvec3(camera.target));
+}
+
+glm::dvec3 WorldFrame::atShare(glm::dvec3 share) const {
+    glm::dvec3 world = (2.0 * share - 1.0) * halfSize;
+    if (axes.isEven()) return world;
+    const glm::dvec3 lo = toPhysical(-halfSize), hi = toPhysical(halfSize), place = toWorld(lo + share * (hi - lo));
+    for (int axis = 0; axis < 3; ++axis)
+        if (axes[axis]) world[axis] = place[axis];
+    return world;
+}
+
+glm::dvec3 WorldFrame::shareOf(glm::dvec3 world) const {
+    glm::dvec3 share;
+    const glm::dvec3 lo = toPhysical(-halfSize), hi = toPhysical(halfSize), place = toPhysical(world);
+    for (int axis = 0; axis < 3; ++axis) {
+        const double even = halfSize[axis] > 0 ? 0.5 * (world[axis] / halfSize[axis] + 1) : 0.5;
+        share[axis] = axes[axis] && hi[axis] > lo[axis] ? (place[axis] - lo[axis]) / (hi[axis] - lo[axis]) : even;
+    }
+    return share;
 }
 
 double focalDistance(const Camera& camera) {

@@ -72,9 +72,12 @@ struct WorldFrame {
     /// Of the sheet: what bricks, slices of samples and planes of a lattice are drawn by.
     glm::dvec3 sheetToWorld(glm::dvec3 sheet) const { return sheet * scale + offset; }
     glm::dvec3 worldToSheet(glm::dvec3 world) const { return (world - offset) / scale; }
+    /// World point of a share of the box in space, per axis: 0 and 1 are its faces.
+    glm::dvec3 atShare(glm::dvec3 share) const;
+    glm::dvec3 shareOf(glm::dvec3 world) const;
 };
-/// The frame of a box with even axes.
-WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch);
+/// The frame of a box with these axes.
+WorldFrame worldFrame(const volume::Box& bounds, glm::dvec3 stretch, volume::AxisMaps axes = {});
 /// The frame of a data set, with the axes of its lattice.
 WorldFrame worldFrame(const volume::DatasetInfo& info, glm::dvec3 stretch);
 

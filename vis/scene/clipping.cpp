@@ -17,7 +17,7 @@ std::vector<PlacedClip> placeClips(const std::vector<Clip>& clips, const WorldFr
         if (!clip.enabled || placed.size() == std::size_t(kMaxClips)) continue;
         PlacedClip one;
         one.kind = clip.kind;
-        one.center = (2.0 * glm::dvec3(clip.center) - 1.0) * frame.halfSize;
+        one.center = frame.atShare(glm::dvec3(clip.center));
         const glm::dvec3 axis(clip.axis);
         if (glm::length(axis) > 1e-9) one.axis = glm::normalize(axis);
         if (clip.kind == ClipKind::Box) one.half = 0.5 * glm::dvec3(clip.size);

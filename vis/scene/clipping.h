@@ -21,7 +21,7 @@ struct Clip {
     bool enabled = true;
     ClipKind kind = ClipKind::Plane;
     ClipKeep keep = ClipKeep::Inside;
-    glm::vec3 center{0.5f};  ///< 0..1 across the bounding box of the data
+    glm::vec3 center{0.5f};  ///< 0..1 across the bounding box of the data, in space
     glm::vec3 axis{1, 0, 0}; ///< world: normal of a plane, axis of a cylinder; zero counts as x
     glm::vec3 size{0.5f};    ///< edges of a box, world
     float radius = 0.25f;    ///< world

@@ -14,7 +14,7 @@
 /// Triangles and lines drawn together with the volumes: iso-surfaces as polygons, and any other meshes.
 ///
 ///     auto streamlines = std::make_shared<Geometry>();
-///     streamlines->lines.positions = {...};     // physical
+///     streamlines->lines.positions = {...};     // of the sheet: physical where axes are even
 ///     streamlines->lines.scalars = {...};       // e.g. the speed at each vertex
 ///     streamlines->lines.ends = {120, 260};     // two lines: vertices 0..119 and 120..259
 ///     scene.geometry.push_back({.geometry = streamlines, .style = {.lineWidth = 3}, .channel = "|U|"});
@@ -25,16 +25,17 @@ namespace tessera::vis {
 
 /// Open polylines.
 struct LineSet {
-    std::vector<glm::vec3> positions; ///< physical, less the origin
+    std::vector<glm::vec3> positions; ///< of the sheet, less the origin
     std::vector<float> scalars;       ///< one per vertex, or empty
     std::vector<std::uint32_t> ends;  ///< per line: one past its last vertex
     glm::dvec3 origin{0};             ///< as that of volume::SurfaceMesh
     bool operator==(const LineSet&) const = default;
 };
 
-/// Meshes and lines of one style. Immutable once in a scene: scenes compare it by address.
+/// Meshes and lines of one style, on the sheet of the data's axes (volume/field/axis_map.h), which world space is
+/// affine to. Immutable once in a scene: scenes compare it by address.
 struct Geometry {
-    volume::SurfaceMesh mesh; ///< physical; both sides of a triangle are lit
+    volume::SurfaceMesh mesh; ///< of the sheet; both sides of a triangle are lit
     LineSet lines;            ///< lit like thin tubes
 };
 

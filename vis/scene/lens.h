@@ -190,7 +190,8 @@ struct LensSpace {
     std::vector<PlacedLens> lenses;
     WorldFrame frame;
     bool operator==(const LensSpace& other) const {
-        return lenses == other.lenses && frame.scale == other.frame.scale && frame.offset == other.frame.offset;
+        return lenses == other.lenses && frame.scale == other.frame.scale && frame.offset == other.frame.offset &&
+               frame.axes == other.frame.axes;
     }
 };
 

@@ -137,6 +137,22 @@ double LassoTable::at(double x, double y) const {
                     glm::mix(double(entry[kLassoTable]), double(entry[kLassoTable + 1]), fx), fy);
 }
 
+SheetBox sheetBox(const SphereRegion& region, const volume::AxisMaps& axes) {
+    return {axes.toSheet(region.center), region.radius};
+}
+
+SheetBox sheetBox(const BoxRegion& region, const volume::AxisMaps& axes) {
+    SheetBox box{region.center, region.radius};
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!axes[axis]) continue;
+        const double lo = axes.toSheet(axis, region.center[axis] - region.radius[axis]);
+        const double hi = axes.toSheet(axis, region.center[axis] + region.radius[axis]);
+        box.center[axis] = (lo + hi) / 2;
+        box.radius[axis] = (hi - lo) / 2;
+    }
+    return box;
+}
+
 DoiFunction::DoiFunction(const Selection& selection, LensSpace space)
     : channels_(selectedChannels(selection)), space_(std::move(space)) {
     const auto place = [&](const std::string& name) {
@@ -144,7 +160,7 @@ DoiFunction::DoiFunction(const Selection& selection, LensSpace space)
     };
     for (const Brush& brush : selection.brushes) {
         if (!brush.enabled) continue;
-        Part part{brush, {}, {}};
+        Part part{brush, {}, {}, {}};
         if (const auto* range = std::get_if<RangeRegion>(&brush.region))
             for (const BrushInterval& interval : range->intervals) part.channel.push_back(place(interval.channel));
         if (const auto* ellipse = std::get_if<EllipseRegion>(&brush.region))
@@ -153,6 +169,8 @@ DoiFunction::DoiFunction(const Selection& selection, LensSpace space)
             part.channel = {place(lasso->x), place(lasso->y)};
             part.lasso = lassoTable(*lasso);
         }
+        if (const auto* ball = std::get_if<SphereRegion>(&brush.region)) part.box = sheetBox(*ball, space_.frame.axes);
+        if (const auto* box = std::get_if<BoxRegion>(&brush.region)) part.box = sheetBox(*box, space_.frame.axes);
         parts_.push_back(std::move(part));
     }
 }
@@ -170,8 +188,10 @@ double DoiFunction::regionDoi(const Part& part, std::span<const double> values, 
                                       (value(1) - ellipse->center.y) / ellipse->radius.y, ellipse->correlation),
                          ellipse->soft);
     if (std::holds_alternative<LassoRegion>(part.brush.region)) return part.lasso.at(value(0), value(1));
-    if (const auto* sphere = std::get_if<SphereRegion>(&part.brush.region))
-        return radialDoi(glm::length((position - sphere->center) / sphere->radius), sphere->soft);
+    const volume::AxisMaps& axes = space_.frame.axes;
+    if (const auto* sphere = std::get_if<SphereRegion>(&part.brush.region)) {
+        return radialDoi(glm::length((axes.toSheet(position) - part.box.center) / part.box.radius), sphere->soft);
+    }
     if (const auto* lens = std::get_if<LensRegion>(&part.brush.region)) {
         double most = 0;
         for (const PlacedLens& one : space_.lenses)
@@ -180,7 +200,7 @@ double DoiFunction::regionDoi(const Part& part, std::span<const double> values, 
         return most;
     }
     const auto& box = std::get<BoxRegion>(part.brush.region);
-    const glm::dvec3 away = glm::abs((position - box.center) / box.radius);
+    const glm::dvec3 away = glm::abs((axes.toSheet(position) - part.box.center) / part.box.radius);
     return radialDoi(std::max({away.x, away.y, away.z}), box.soft);
 }
 

@@ -81,7 +81,8 @@ struct LassoRegion {
     }
 };
 
-/// A ball in space; if the data are stretched its physical radii differ, so that it appears round.
+/// A ball in the picture; if the data are stretched its physical radii differ, so that it appears round. Where axes are
+/// uneven the radii are lengths of the drawing: of the sheet around the centre.
 struct SphereRegion {
     static constexpr std::string_view kType = "sphere";
     glm::dvec3 center{0}, radius{1}; ///< physical
@@ -220,7 +221,15 @@ struct LassoTable {
 };
 LassoTable lassoTable(const LassoRegion& lasso);
 
-/// A selection prepared for evaluation at many points. Lens brushes select nothing if `space` lacks the lens.
+/// Half the box of a region on the sheet, and its middle there.
+struct SheetBox {
+    glm::dvec3 center{0}, radius{1};
+};
+SheetBox sheetBox(const SphereRegion& region, const volume::AxisMaps& axes);
+SheetBox sheetBox(const BoxRegion& region, const volume::AxisMaps& axes);
+
+/// A selection prepared for evaluation at many points. Lens brushes select nothing if `space` lacks the lens; regions
+/// in space are by the axes of its frame, which must be those of the data.
 class DoiFunction {
 public:
     explicit DoiFunction(const Selection& selection, LensSpace space = {});
@@ -241,6 +250,7 @@ private:
         Brush brush;
         std::vector<int> channel; ///< indices into channels_: one per interval, or x and y
         LassoTable lasso;
+        SheetBox box = {}; ///< of regions in space
     };
     double regionDoi(const Part& part, std::span<const double> values, glm::dvec3 position) const;
     std::vector<std::string> channels_;

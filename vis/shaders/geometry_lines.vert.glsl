@@ -3,7 +3,7 @@ layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
 layout(location = 2) in vec2 scalars;
 
-uniform vec3 worldScale, worldOffset; // world = physical * scale + offset
+uniform vec3 worldScale, worldOffset; // world = sheet * scale + offset
 uniform mat4 worldToClip;
 uniform vec2 pixels;     // size of the picture in pixels
 uniform float lineWidth; // pixels

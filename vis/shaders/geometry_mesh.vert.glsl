@@ -3,7 +3,7 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in float scalar;
 
-uniform vec3 worldScale, worldOffset; // world = physical * scale + offset
+uniform vec3 worldScale, worldOffset; // world = sheet * scale + offset
 uniform mat4 worldToClip;
 
 out vec3 world, direction; // direction: the normal, not normalised

@@ -39,7 +39,9 @@ const glm::vec4& entry(const std::array<glm::vec4, kColors>& table, double share
 std::vector<CloudPoint> makeCloud(const volume::Samples4& samples, const CloudStyle& style) {
     const auto colors = tableOf(style.transfer);
     const auto fourthColors = tableOf(style.fourthColors.value_or(TransferFunction{}));
-    const DoiFunction interest(style.selection);
+    LensSpace space;
+    space.frame.axes = style.axes;
+    const DoiFunction interest(style.selection, space);
     const bool brushed = style.selection.active();
     const double power = style.density * kReferencePoints / std::max(1.0, double(samples.count()));
     const glm::dvec3 size = glm::max(style.bounds.size(), glm::dvec3(std::numeric_limits<double>::min()));
@@ -52,7 +54,8 @@ std::vector<CloudPoint> makeCloud(const volume::Samples4& samples, const CloudSt
         if (std::isnan(own[0]) || std::isnan(along)) continue;
         const glm::dvec3 physical(samples.positions[i]);
         const double fourth = shareOf(style.fourth, along);
-        const glm::dvec3 inBox = glm::clamp((physical - style.bounds.lo) / size, 0.0, 1.0) * 2.0 - 1.0;
+        const glm::dvec3 inBox =
+            glm::clamp((style.axes.toSheet(physical) - style.bounds.lo) / size, 0.0, 1.0) * 2.0 - 1.0;
         CloudPoint point;
         point.position = glm::vec4(glm::dvec4(inBox, fourth * 2 - 1) * style.half);
         point.color = entry(colors, shareOf(style.range, double(own[0])));

@@ -24,9 +24,10 @@ struct CloudPoint {
 /// Mapping of samples to positions in the box -half..half and to colours. Channels are indices into those of Samples4.
 struct CloudStyle {
     volume::Box bounds;
-    glm::dvec4 half{0.5};   ///< within the unit ball
-    Range fourth{0, 1};     ///< values at the ends of the fourth axis
-    int fourthChannel = -1; ///< -1: time
+    volume::AxisMaps axes = {}; ///< to draw samples as even as they are stored
+    glm::dvec4 half{0.5};       ///< within the unit ball
+    Range fourth{0, 1};         ///< values at the ends of the fourth axis
+    int fourthChannel = -1;     ///< -1: time
     TransferFunction transfer;
     Range range; ///< of the first channel's colours: effectiveRange()
     /// Colours along the fourth axis; none: the transfer function of the first channel, which always gives the opacity.

@@ -2,143 +2,15 @@
 
 #include "volume/mesh/isosurface.h"
 
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 
 namespace tessera::vis {
 
 namespace {
 
-constexpr int kSides = 12;
 constexpr double kMostSamples = 3e7; ///< samples of one component: 120 MB
-
-struct Frame {
-    glm::dvec3 along, u, v; ///< right-handed, length 1
-};
-
-Frame frameAlong(glm::dvec3 direction) {
-    const glm::dvec3 along = glm::normalize(direction);
-    const glm::dvec3 other = std::abs(along.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    const glm::dvec3 u = glm::normalize(glm::cross(other, along));
-    return {along, u, glm::cross(along, u)};
-}
-
-/// Builds meshes from rings of vertices around an axis, in stretched space.
-class Rings {
-public:
-    explicit Rings(glm::dvec3 stretch) : stretch_(stretch) {}
-    /// Adds a ring; `lean`: axial component of its normals per unit of radial component.
-    void add(glm::dvec3 centre, const Frame& frame, double radius, double lean, double outwards, float scalar) {
-        for (int i = 0; i < kSides; ++i) {
-            const double angle = 2 * std::numbers::pi * i / kSides;
-            const glm::dvec3 out = frame.u * std::cos(angle) + frame.v * std::sin(angle);
-            mesh.positions.emplace_back((centre + out * radius) / stretch_);
-            // Normals transform with the inverse transpose.
-            mesh.normals.emplace_back(glm::normalize((out * outwards + frame.along * lean) * stretch_));
-            mesh.scalars.push_back(scalar);
-        }
-    }
-    /// Adds triangles between the last two rings.
-    void connect() {
-        const auto first = std::uint32_t(mesh.positions.size()) - 2 * kSides;
-        for (std::uint32_t i = 0; i < kSides; ++i) {
-            const std::uint32_t next = (i + 1) % kSides;
-            const std::uint32_t a = first + i, b = first + next, c = a + kSides, d = b + kSides;
-            mesh.triangles.push_back({a, b, d});
-            mesh.triangles.push_back({a, d, c});
-        }
-    }
-    /// Adds the lateral surface of a truncated cone between two positions on an axis.
-    void face(glm::dvec3 from, glm::dvec3 to, const Frame& frame, double radiusFrom, double radiusTo, float scalar) {
-        const double rise = glm::dot(to - from, frame.along), fall = radiusFrom - radiusTo;
-        add(from, frame, radiusFrom, fall, rise, scalar);
-        add(to, frame, radiusTo, fall, rise, scalar);
-        connect();
-    }
-    volume::SurfaceMesh mesh;
-
-private:
-    glm::dvec3 stretch_;
-};
-
-/// The vertices of a line, in stretched space.
-struct Course {
-    std::vector<glm::dvec3> places;
-    std::vector<float> scalars;
-};
-
-/// Removes vertices as long as positions stay within `apart` of the polyline and scalars within `step` of linear
-/// interpolation. (Douglas and Peucker, Algorithms for the reduction of the number of points, 1973.)
-Course simplified(const Course& course, double apart, double step) {
-    const std::size_t n = course.places.size();
-    if (n < 3) return course;
-    std::vector<bool> kept(n, false);
-    kept.front() = kept.back() = true;
-    std::vector<std::pair<std::size_t, std::size_t>> parts{{0, n - 1}};
-    while (!parts.empty()) {
-        const auto [first, last] = parts.back();
-        parts.pop_back();
-        const glm::dvec3 from = course.places[first], way = course.places[last] - from;
-        const double length2 = glm::dot(way, way);
-        double worst = 1;
-        std::size_t at = first;
-        for (std::size_t i = first + 1; i < last; ++i) {
-            const glm::dvec3 to = course.places[i] - from;
-            const double t = length2 > 0 ? std::clamp(glm::dot(to, way) / length2, 0.0, 1.0) : 0;
-            const double even = (1 - t) * double(course.scalars[first]) + t * double(course.scalars[last]);
-            const double colour = std::abs(double(course.scalars[i]) - even);
-            double error = glm::length(to - t * way) / apart;
-            if (step > 0 && colour > error * step) error = colour / step;
-            if (error > worst) worst = error, at = i;
-        }
-        if (at == first) continue;
-        kept[at] = true;
-        parts.emplace_back(first, at);
-        parts.emplace_back(at, last);
-    }
-    Course out;
-    for (std::size_t i = 0; i < n; ++i) {
-        if (!kept[i]) continue;
-        out.places.push_back(course.places[i]);
-        out.scalars.push_back(course.scalars[i]);
-    }
-    return out;
-}
-
-/// A line of a set, without coincident vertices.
-Course courseOf(const LineSet& lines, std::uint32_t begin, std::uint32_t end, double apart, glm::dvec3 stretch) {
-    Course out;
-    for (std::uint32_t i = begin; i < end; ++i) {
-        const glm::dvec3 place = glm::dvec3(lines.positions[i]) * stretch;
-        if (!out.places.empty() && glm::distance(place, out.places.back()) <= apart) continue;
-        out.places.push_back(place);
-        out.scalars.push_back(lines.scalars.empty() ? 0 : lines.scalars[i]);
-    }
-    return out;
-}
-
-volume::SurfaceMesh glyphMesh(std::span<const Glyph> glyphs, glm::dvec3 stretch, bool shafts) {
-    Rings rings(stretch);
-    for (const Glyph& glyph : glyphs) {
-        const double length = glm::length(glyph.vector);
-        if (!(length > 0)) continue;
-        const Frame frame = frameAlong(glyph.vector);
-        const double neck = shafts ? 0.62 : 0, head = length * (shafts ? 0.14 : 0.22);
-        const glm::dvec3 foot = glyph.place * stretch - glyph.vector * (shafts ? 0.0 : 0.5);
-        const glm::dvec3 at = foot + glyph.vector * neck, tip = foot + glyph.vector;
-        const double shaft = shafts ? length * 0.045 : 0;
-        if (shafts) {
-            rings.face(foot, foot, frame, 0, shaft, glyph.scalar);
-            rings.face(foot, at, frame, shaft, shaft, glyph.scalar);
-        }
-        rings.face(at, at, frame, shaft, head, glyph.scalar);
-        rings.face(at, tip, frame, head, 0, glyph.scalar);
-    }
-    return std::move(rings.mesh);
-}
 
 /// Values of the layer's channel at positions less the origin of the data; NaN if absent.
 std::vector<float> valuesAt(const volume::BrickSource& source, const std::string& channel, int time, int level,
@@ -218,25 +90,37 @@ std::optional<FlowData> readFlow(const volume::BrickSource& source, const FlowLa
     return data;
 }
 
+/// A direction in space as it is drawn at a place: by how much longer or shorter a length is on the sheet there.
+glm::dvec3 drawnDirection(const volume::Lattice& lattice, glm::dvec3 place, glm::dvec3 direction) {
+    return direction * (glm::abs(lattice.spacing) / lattice.lengthsAt(place));
+}
+
+/// Lines of seeds are straight in space; other shapes are those of the drawing, in which seeds are as dense everywhere.
 std::vector<glm::dvec3> seedsOf(const volume::BrickSource& source, const FlowData& data, const FlowLayer& layer,
                                 int time, glm::dvec3 stretch, const Progress& progress, const DoiFunction* interest) {
     const volume::Box& bounds = source.info().bounds;
+    const volume::AxisMaps axes =
+        layer.seeds == volume::SeedShape::Line ? volume::AxisMaps{} : source.info().lattice.axes;
     std::vector<Weight> weights{whereItFlows(data.field(), data.slowest)};
     if (const auto channel = layer.weight.empty() ? std::nullopt : source.info().findChannel(layer.weight))
         weights.push_back(byChannel(source, *channel, time, data.level, progress));
     if (layer.seedBrushed && interest) weights.push_back(byInterest(source, *interest, time, data.level, progress));
-    return volume::placeSeeds({.shape = layer.seeds,
-                               .from = bounds.lo + bounds.size() * glm::dvec3(layer.from),
-                               .to = bounds.lo + bounds.size() * glm::dvec3(layer.to),
-                               .proportions = stretch,
-                               .count = layer.count,
-                               .random = std::uint32_t(layer.random)},
-                              [&](glm::dvec3 place) {
-                                  double product = 1;
-                                  for (const Weight& weight : weights)
-                                      if (product > 0) product *= weight(place);
-                                  return product;
-                              });
+    std::vector<glm::dvec3> seeds =
+        volume::placeSeeds({.shape = layer.seeds,
+                            .from = axes.toSheet(bounds.lo + bounds.size() * glm::dvec3(layer.from)),
+                            .to = axes.toSheet(bounds.lo + bounds.size() * glm::dvec3(layer.to)),
+                            .proportions = stretch,
+                            .count = layer.count,
+                            .random = std::uint32_t(layer.random)},
+                           [&](glm::dvec3 sheet) {
+                               const glm::dvec3 place = axes.toSpace(sheet);
+                               double product = 1;
+                               for (const Weight& weight : weights)
+                                   if (product > 0) product *= weight(place);
+                               return product;
+                           });
+    for (glm::dvec3& seed : seeds) seed = axes.toSpace(seed);
+    return seeds;
 }
 
 /// Particle paths through all times, coloured by the channel at the time of passage.
@@ -251,11 +135,16 @@ LineSet particleWays(const volume::BrickSource& source, const FlowLayer& layer, 
         return *vector * double(layer.speed);
     };
     LineSet lines{.positions = {}, .scalars = {}, .ends = {}, .origin = volume::originFor(source.info().bounds)};
+    const volume::AxisMaps& axes = source.info().lattice.axes;
+    std::vector<glm::vec3> inSpace;
     std::vector<double> moments;
     for (const volume::Pathline& line : volume::pathlines(field, seeds, times[std::size_t(time)], times.front(),
                                                           times.back(), settings, progress.part(0, 0.8))) {
         if (line.places.size() < 2) continue;
-        for (const glm::dvec3& place : line.places) lines.positions.emplace_back(place - lines.origin);
+        for (const glm::dvec3& place : line.places) {
+            inSpace.emplace_back(place - lines.origin);
+            lines.positions.emplace_back(axes.toSheet(place) - lines.origin);
+        }
         moments.insert(moments.end(), line.times.begin(), line.times.end());
         lines.ends.push_back(std::uint32_t(lines.positions.size()));
     }
@@ -268,7 +157,7 @@ LineSet particleWays(const volume::BrickSource& source, const FlowLayer& layer, 
         for (std::size_t v = 0; v < moments.size(); ++v)
             if (moments[v] >= times[before] && moments[v] < next) {
                 vertices.push_back(v);
-                places.push_back(lines.positions[v]);
+                places.push_back(inSpace[v]);
             }
         if (vertices.empty()) continue;
         const auto a = valuesAt(source, layer.channel, int(before), level, places, progress.part(0.8, 1));
@@ -285,43 +174,6 @@ LineSet particleWays(const volume::BrickSource& source, const FlowLayer& layer, 
 }
 
 } // namespace
-
-volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch) {
-    constexpr double kColorSteps = 250; // distinguishable colours over the range
-    const auto [least, most] = std::minmax_element(lines.scalars.begin(), lines.scalars.end());
-    const double step = lines.scalars.empty() ? 0 : double(*most - *least) / kColorSteps;
-    Rings rings(stretch);
-    rings.mesh.origin = lines.origin;
-    std::uint32_t begin = 0;
-    for (const std::uint32_t end : lines.ends) {
-        const Course course = simplified(courseOf(lines, begin, end, radius * 0.05, stretch), radius * 0.05, step);
-        begin = end;
-        const std::size_t n = course.places.size();
-        if (n < 2) continue;
-        Frame frame = frameAlong(course.places[1] - course.places[0]);
-        rings.face(course.places[0], course.places[0], frame, 0, radius, course.scalars[0]);
-        for (std::size_t i = 0; i < n; ++i) {
-            // Rotation-minimising frame: the former frame, rotated only as far as the new direction requires.
-            const glm::dvec3 way = course.places[std::min(i + 1, n - 1)] - course.places[i > 0 ? i - 1 : 0];
-            if (glm::length(way) > 0) frame.along = glm::normalize(way);
-            const glm::dvec3 u = frame.u - frame.along * glm::dot(frame.u, frame.along);
-            frame.u = glm::length(u) > 1e-6 ? glm::normalize(u) : frameAlong(frame.along).u;
-            frame.v = glm::cross(frame.along, frame.u);
-            rings.add(course.places[i], frame, radius, 0, 1, course.scalars[i]);
-            if (i > 0) rings.connect();
-        }
-        rings.face(course.places[n - 1], course.places[n - 1], frame, radius, 0, course.scalars[n - 1]);
-    }
-    return std::move(rings.mesh);
-}
-
-volume::SurfaceMesh arrows(std::span<const Glyph> glyphs, glm::dvec3 stretch) {
-    return glyphMesh(glyphs, stretch, true);
-}
-
-volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch) {
-    return glyphMesh(glyphs, stretch, false);
-}
 
 int flowLevel(const volume::BrickGrid& grid, int times) {
     return grid.levelWithin(kMostSamples / times);
@@ -347,6 +199,7 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
     const std::vector<glm::dvec3> seeds =
         seedsOf(source, *data, layer, time, stretch, progress.part(0.3, 0.4), interest);
     const glm::dvec3 origin = volume::originFor(source.info().bounds);
+    const volume::Lattice& lattice = source.info().lattice;
     auto out = std::make_shared<Geometry>();
     if (followsFlow(layer.kind)) {
         LineSet lines{.positions = {}, .scalars = {}, .ends = {}, .origin = origin};
@@ -359,12 +212,16 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
                               double(layer.radius) * longestDrawn, stretch);
             return out;
         }
+        std::vector<glm::vec3> inSpace;
         for (const auto& line : volume::streamlines(field, seeds, settings, progress.part(0.4, 0.8))) {
             if (line.size() < 2) continue;
-            for (const glm::dvec3& place : line) lines.positions.emplace_back(place - origin);
+            for (const glm::dvec3& place : line) {
+                inSpace.emplace_back(place - origin);
+                lines.positions.emplace_back(lattice.axes.toSheet(place) - origin);
+            }
             lines.ends.push_back(std::uint32_t(lines.positions.size()));
         }
-        lines.scalars = valuesAt(source, layer.channel, time, level, lines.positions, progress.part(0.8, 1));
+        lines.scalars = valuesAt(source, layer.channel, time, level, std::move(inSpace), progress.part(0.8, 1));
         if (layer.kind == FlowKind::Tubes)
             out->mesh = tubes(lines, double(layer.radius) * longestDrawn, stretch);
         else
@@ -380,8 +237,9 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
     for (std::size_t i = 0; i < seeds.size(); ++i) {
         const glm::dvec3 vector = *field(seeds[i]); // not zero: seeds lie where it flows
         const double share = layer.scaled ? glm::length(vector) / greatest : 1;
-        glyphs.push_back({seeds[i] - origin,
-                          glm::normalize(vector * stretch) * (share * double(layer.size) * longestDrawn), scalars[i]});
+        const glm::dvec3 drawnWay = glm::normalize(drawnDirection(lattice, seeds[i], vector) * stretch);
+        glyphs.push_back({lattice.axes.toSheet(seeds[i]) - origin,
+                          drawnWay * (share * double(layer.size) * longestDrawn), scalars[i]});
     }
     if (layer.kind == FlowKind::Arrows) out->mesh = arrows(glyphs, stretch);
     if (layer.kind == FlowKind::Cones) out->mesh = cones(glyphs, stretch);

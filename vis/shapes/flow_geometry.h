@@ -12,8 +12,8 @@ namespace tessera::vis {
 
 /// An arrow or cone at a place.
 struct Glyph {
-    glm::dvec3 place{0};  ///< physical, less the origin of the mesh; the tail of an arrow, the centre of a cone
-    glm::dvec3 vector{0}; ///< direction and length as drawn: physical, times stretch
+    glm::dvec3 place{0};  ///< of the sheet, less the origin of the mesh; the tail of an arrow, the centre of a cone
+    glm::dvec3 vector{0}; ///< direction and length as drawn: of the sheet, times stretch
     float scalar = 0;
 };
 

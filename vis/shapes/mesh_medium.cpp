@@ -65,7 +65,7 @@ Medium<Number> meshMedium(const LightGrid& grid, const MeshCasters& casters, std
             glm::dvec3 p[3];
             double scalar = 0, longest = 0;
             for (int i = 0; i < 3; ++i) {
-                p[i] = casters.frame.toWorld(mesh.origin + glm::dvec3(mesh.positions[triangle[i]]));
+                p[i] = casters.frame.sheetToWorld(mesh.origin + glm::dvec3(mesh.positions[triangle[i]]));
                 if (caster.scalars) scalar += double(mesh.scalars[triangle[i]]) / 3;
             }
             for (int i = 0; i < 3; ++i) longest = std::max(longest, glm::length((p[(i + 1) % 3] - p[i]) / cell));

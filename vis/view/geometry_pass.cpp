@@ -247,7 +247,7 @@ void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) c
     const Program& own = *each.program;
     const WorldFrame frame = worldFrame(job.info, job.scene.stretch);
     const glm::dvec3 origin = each.lines ? layer.geometry->lines.origin : layer.geometry->mesh.origin;
-    own.set("worldOffset", glm::vec3(frame.toWorld(origin)));
+    own.set("worldOffset", glm::vec3(frame.sheetToWorld(origin)));
     own.set("peel", peel);
     own.set("row", (float(each.layer) + 0.5f) / float(tableRows_));
     own.set("map", maps_[each.layer]);

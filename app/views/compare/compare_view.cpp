@@ -49,7 +49,7 @@ void drawOver(const Frame& frame, const PictureBox& box, const Session& session,
               bool marked, bool there, bool left = true) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const volume::DatasetInfo& info = frame.context.source->info();
-    const SpaceFrame space = spaceFrame(box.min, box.max(), session.camera, info.bounds, session.stretch);
+    const SpaceFrame space = spaceFrame(box.min, box.max(), session.camera, info, session.stretch);
     const Decoration& shown = frame.context.decoration;
     if (there && shown.cursor) drawCursor3d(draw, space, session.cursor);
     if (there && shown.outlines) drawSpaceBrushes(draw, space, session.selection);
@@ -58,6 +58,8 @@ void drawOver(const Frame& frame, const PictureBox& box, const Session& session,
     const float pad = em() * 0.5f;
     addFittedWithBackdrop(draw, {left ? box.min.x + pad : box.max().x - pad, box.min.y + em() * 0.4f},
                           {left ? 0.0f : 1.0f, 0}, colors.text, caption, box.size.x * (left ? 1.0f : 0.5f) - 2 * pad);
+    if (const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes); !uneven.empty() && left)
+        addTextWithBackdrop(draw, {box.min.x + pad, box.max().y - pad}, {0, 1}, colors.faint, uneven.c_str());
     // In a low picture it would cover what is compared; the table says it as well.
     if (marked && box.size.y > em() * 7)
         addTextWithBackdrop(draw, {box.min.x + pad, box.min.y + em() * 1.7f}, {0, 0}, colors.faint, "reference");

@@ -8,10 +8,66 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
 namespace tessera::app {
+
+namespace {
+
+/// Distances along a line at which its places are read: half of them spread evenly over its length and half over the
+/// cells it runs through, so that thin cells have places too. Uneven axes only.
+std::vector<double> distancesOver(const std::vector<glm::dvec3>& corners, const volume::AxisMaps& axes, int samples) {
+    struct Knot {
+        double distance, weight; ///< from the start
+    };
+    std::vector<Knot> knots{{0, 0}};
+    double length = 0, drawn = 0;
+    const auto eachPart = [&](const auto& use) { // between planes of the axes a line is straight in the drawing, too
+        for (std::size_t i = 1; i < corners.size(); ++i) {
+            const glm::dvec3 from = corners[i - 1], way = corners[i] - from;
+            std::vector<double> shares{0, 1};
+            for (int axis = 0; axis < 3; ++axis)
+                if (axes[axis] && way[axis] != 0)
+                    for (const double plane : axes[axis]->planes())
+                        if (const double at = (plane - from[axis]) / way[axis]; at > 0 && at < 1) shares.push_back(at);
+            std::ranges::sort(shares);
+            for (std::size_t k = 1; k < shares.size(); ++k) {
+                const glm::dvec3 a = from + shares[k - 1] * way, b = from + shares[k] * way;
+                use(glm::distance(a, b), glm::distance(axes.toSheet(a), axes.toSheet(b)));
+            }
+        }
+    };
+    eachPart([&](double own, double onSheet) { length += own, drawn += onSheet; });
+    if (!(length > 0) || !(drawn > 0)) return std::vector<double>(static_cast<std::size_t>(std::max(samples, 0)), 0.0);
+    eachPart([&](double own, double onSheet) {
+        knots.push_back({knots.back().distance + own, knots.back().weight + (own / length + onSheet / drawn) / 2});
+    });
+    std::vector<double> out;
+    std::size_t next = 1;
+    for (int i = 0; i < samples; ++i) {
+        const double wanted = knots.back().weight * i / std::max(1, samples - 1);
+        while (next + 1 < knots.size() && knots[next].weight < wanted) ++next;
+        const Knot &a = knots[next - 1], &b = knots[next];
+        const double share =
+            b.weight > a.weight ? std::clamp((wanted - a.weight) / (b.weight - a.weight), 0.0, 1.0) : 0;
+        out.push_back(i + 1 == samples && i > 0 ? length : std::lerp(a.distance, b.distance, share));
+    }
+    return out;
+}
+
+/// The place of a polyline at a distance from its start.
+glm::dvec3 placeAlong(const std::vector<glm::dvec3>& corners, double distance) {
+    for (std::size_t i = 1; i < corners.size(); ++i) {
+        const double own = glm::distance(corners[i - 1], corners[i]);
+        if (distance <= own && own > 0) return glm::mix(corners[i - 1], corners[i], distance / own);
+        distance -= own;
+    }
+    return corners.back();
+}
+
+} // namespace
 
 Profile readProfile(const volume::BrickSource& source, const ProfileQuery& query, const Progress& progress) {
     const bool line = query.over == ProfileOver::Line;
@@ -25,6 +81,11 @@ Profile readProfile(const volume::BrickSource& source, const ProfileQuery& query
         length += glm::distance(query.corners[i - 1], query.corners[i]);
     for (std::size_t i = 0; i < out.positions.size(); ++i)
         out.distance.push_back(length * static_cast<double>(i) / std::max(1, query.samples - 1));
+    if (const volume::AxisMaps& axes = source.info().lattice.axes; line && !axes.isEven() && query.corners.size() > 1) {
+        out.distance = distancesOver(query.corners, axes, query.samples);
+        for (std::size_t i = 0; i < out.positions.size(); ++i)
+            out.positions[i] = placeAlong(query.corners, out.distance[i]);
+    }
     const std::size_t rows = line ? 1 : out.times.size();
     for (const int channel : query.channels) {
         std::vector<double>& values = out.values.emplace_back();

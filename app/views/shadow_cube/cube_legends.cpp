@@ -25,6 +25,11 @@ std::string kindName(WallKind kind) {
     return kNames[static_cast<std::size_t>(kind)];
 }
 
+std::string kindText(WallKind kind, const volume::DatasetInfo& info, int axis, const std::string& parameter) {
+    const bool drawn = info.lattice.axes[axis] && (kind == WallKind::Mean || kind == WallKind::XRay);
+    return kindName(kind) + " " + parameter + (drawn ? " over the drawing" : "");
+}
+
 std::string faceName(std::size_t face) {
     static constexpr const char* kNames[] = {"left", "right", "bottom", "top", "back", "front"};
     return kNames[face];
@@ -37,9 +42,10 @@ std::vector<ShownFace> shownFaces(const Session& session, const CubeFrame& frame
         const auto channel = resolveChannel(frame.info, session, wall.channel);
         if (!channel || !facesViewer(kCubeFaces[i], frame.half, frame.camera)) continue;
         const bool selection = wall.kind == WallKind::Shadow && session.selection.active();
-        faces.push_back(
-            {i, *channel,
-             selection ? "shadow of the selection" : kindName(wall.kind) + " " + frame.info.channel(*channel).name});
+        faces.push_back({i, *channel,
+                         selection
+                             ? "shadow of the selection"
+                             : kindText(wall.kind, frame.info, kCubeFaces[i].axis, frame.info.channel(*channel).name)});
     }
     std::vector<std::size_t> ambiguous;
     for (std::size_t i = 0; i < faces.size(); ++i)

@@ -19,6 +19,9 @@ std::vector<ShownFace> shownFaces(const Session& session, const CubeFrame& frame
 
 /// "slice", "mean", "maximum", "absorption", "shadow".
 std::string kindName(WallKind kind);
+/// What a face shows of a parameter: "mean T", "mean T over the drawing" where cells of its axis are not drawn to
+/// scale.
+std::string kindText(WallKind kind, const volume::DatasetInfo& info, int axis, const std::string& parameter);
 /// As the session names a face of kCubeFaces: "left", "right", ...
 std::string faceName(std::size_t face);
 

@@ -65,10 +65,13 @@ void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
         const volume::Channel known = frame.info.channel(*channel);
         const bool share = wall.kind == WallKind::XRay || wall.kind == WallKind::Shadow;
         const Range range = frame.info.channelRange(known);
-        text = (wall.kind == WallKind::Shadow ? "selected" : kindName(wall.kind) + " " + known.name) + ": " +
-               (!value  ? "absent"
-                : share ? formatShare(*value)
-                        : formatQuantity(*value, known.unit, (range.hi - range.lo) / 2000));
+        text =
+            (wall.kind == WallKind::Shadow ? "selected"
+                                           : kindText(wall.kind, frame.info, kCubeFaces[hit.face].axis, known.name)) +
+            ": " +
+            (!value  ? "absent"
+             : share ? formatShare(*value)
+                     : formatQuantity(*value, known.unit, (range.hi - range.lo) / 2000));
     } catch (const Error& error) {
         text = error.what();
     }
@@ -273,7 +276,7 @@ void drawObject(ViewContext& context, const std::string& pane, const CubeFrame& 
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
     context.answers.follow(status);
     addPicture(draw, status.texture, frame.min, frame.max());
-    const SpaceFrame object = spaceFrame(frame.min, frame.max(), seen, frame.info.bounds, session.stretch);
+    const SpaceFrame object = spaceFrame(frame.min, frame.max(), seen, frame.info, session.stretch);
     if (context.decoration.outlines) drawSpaceBrushes(draw, object, session.selection);
     const PlotColors colors = plotColors();
     if (const auto at = object.pixel(session.cursor); at && context.decoration.cursor) {
@@ -327,7 +330,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
         frame.camera = session.camera;
         if (!view.together) frame.camera.orientation = view.orientation;
         frame.camera = cubeCamera(view, frame.camera, frame.half, frame.aspect(), cubeShare(view, frame.size));
-        frame.space = spaceFrame(frame.min, frame.max(), frame.camera, info.bounds, session.stretch);
+        frame.space = spaceFrame(frame.min, frame.max(), frame.camera, info, session.stretch);
     };
     look();
     mouseArea("picture", frame.size,
@@ -365,6 +368,13 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     if (explained) drawLegends(draw, legends, room, cache.legend);
     drawCubeAxes(draw, frame, axes, axisLabels(session, info), taken);
     cache.menu.titles = {};
+    if (const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes);
+        !uneven.empty() && context.decoration.title) {
+        const ImVec2 at{frame.max().x - em() * 0.5f, frame.min.y + em() * 0.4f},
+            size = ImGui::CalcTextSize(uneven.c_str());
+        addTextWithBackdrop(draw, at, {1, 0}, plotColors().faint, uneven.c_str());
+        taken.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
+    }
     if (context.decoration.title) drawTitles(frame, faces, cache.menu, std::move(taken));
     if (hovered) drawHovered(context, frame, cache, view);
     draw.PopClipRect();

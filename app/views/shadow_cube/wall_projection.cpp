@@ -14,7 +14,7 @@ namespace {
 constexpr int kMostPlaces = 4096;
 constexpr double kThinnest = 1e-3; ///< half edge of data without extent, for a camera
 
-/// Middles of even parts of the line through the data behind a place, two to a cell of the lattice.
+/// Middles of even parts of the line through the data behind a place as it is drawn, two to a cell of the lattice.
 std::vector<glm::dvec3> placesBehind(const volume::DatasetInfo& info, const CubeFace& face, glm::dvec3 position) {
     const double length = info.bounds.size()[face.axis];
     const double spacing = std::abs(info.lattice.spacing[face.axis]);
@@ -23,14 +23,17 @@ std::vector<glm::dvec3> placesBehind(const volume::DatasetInfo& info, const Cube
     std::vector<glm::dvec3> places;
     for (int i = 0; i < count; ++i) {
         places.push_back(position);
-        places.back()[face.axis] = info.bounds.lo[face.axis] + length * (i + 0.5) / count;
+        places.back()[face.axis] =
+            info.lattice.axes.toSpace(face.axis, info.bounds.lo[face.axis] + length * (i + 0.5) / count);
     }
     return places;
 }
 
 double greatestInterest(const volume::BrickSource& source, const Session& session,
                         const std::vector<glm::dvec3>& places, int time) {
-    const vis::DoiFunction interest(session.selection);
+    vis::LensSpace space; // walls have no lenses
+    space.frame.axes = source.info().lattice.axes;
+    const vis::DoiFunction interest(session.selection, space);
     std::vector<std::vector<volume::ProbeValue>> columns;
     for (const std::string& name : interest.channels()) {
         const auto channel = source.info().findChannel(name);

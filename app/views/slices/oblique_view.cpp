@@ -75,10 +75,10 @@ struct PictureRoom {
 PictureRoom roomOfPicture(const ObliqueLayout& layout, const PlanePicture& slice, bool axes) {
     PictureRoom room{{layout.picture.x, layout.picture.y + em() * (axes ? kTitleAbove : 1.35f)}, layout.pictureEnd, {}};
     if (!axes) return room;
-    const float left = axisRoom(AxisSide::Left, slice.shownY(), TitlePlace::Elsewhere);
+    const float left = axisRoom(AxisSide::Left, slice.shownY(), TitlePlace::Elsewhere, slice.up.scale());
     room.lo.x = std::floor(room.lo.x + left);
     room.hi.x -= em() * 0.8f;
-    room.hi.y -= axisRoom(AxisSide::Bottom, slice.shownX(), TitlePlace::Elsewhere);
+    room.hi.y -= axisRoom(AxisSide::Bottom, slice.shownX(), TitlePlace::Elsewhere, slice.right.scale());
     room.axes = PlaneAxes{.min = layout.picture, .max = layout.pictureEnd, .left = room.lo.x - layout.picture.x};
     return room;
 }
@@ -87,18 +87,21 @@ PictureRoom roomOfPicture(const ObliqueLayout& layout, const PlanePicture& slice
 void drawPlaneTitle(const ObliqueLayout& layout, const PlanePicture& slice, const PlotFrame& plot) {
     const std::string& whole = slice.place;
     const float room = layout.pictureEnd.x - layout.picture.x - em() * 4;
-    const std::string text = firstThatFits({whole, whole.substr(whole.find(" at ") + 4)}, room);
+    const std::size_t at = whole.find(" at "); // without it there is only a direction
+    const std::string text = firstThatFits({whole, whole.substr(at == std::string::npos ? 7 : at + 4)}, room);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float least = layout.picture.x + em() * 4; // the title of the vertical axis stands before it
-    const ImVec2 at{std::round(std::max(plot.max.x - size.x, least)), layout.picture.y};
-    ImGui::GetWindowDrawList()->AddText(at, plotColors().text, text.c_str());
-    tellWhole(at, {at.x + size.x, at.y + size.y}, whole, text);
+    const ImVec2 from{std::round(std::max(plot.max.x - size.x, least)), layout.picture.y};
+    ImGui::GetWindowDrawList()->AddText(from, plotColors().text, text.c_str());
+    tellWhole(from, {from.x + size.x, from.y + size.y}, whole, text);
 }
 
 /// Legend, axes in words, and the values at the cross-hair.
 void drawNumbersOf(ViewContext& context, const ObliqueView& view, const Readout& readout, const PlanePicture& slice) {
     drawPlaneLegend(context, slice, readout, true);
-    if (const std::string axes = axesText(slice); !axes.empty() && context.decoration.title) {
+    std::string axes = axesText(slice);
+    if (const std::string uneven = unevenText(slice); !uneven.empty()) axes += (axes.empty() ? "" : "; ") + uneven;
+    if (!axes.empty() && context.decoration.title) {
         ImGui::PushTextWrapPos(0);
         ImGui::TextDisabled("%s", axes.c_str());
         ImGui::PopTextWrapPos();

@@ -25,14 +25,15 @@ SliceAxes axesOf(volume::SpaceAxis axis, const vis::WorldFrame& world) {
     return out;
 }
 
-/// Position of plane `index` of `count`: the middle of its share of the box.
-double planePosition(const volume::Box& bounds, int axis, int index, int count) {
-    return bounds.lo[axis] + bounds.size()[axis] * (index + 0.5) / count;
+/// Position of plane `index` of `count`: the middle of its share of the box as it is drawn.
+double planePosition(const volume::DatasetInfo& info, int axis, int index, int count) {
+    const volume::Box& bounds = info.bounds;
+    return info.lattice.axes.toSpace(axis, bounds.lo[axis] + bounds.size()[axis] * (index + 0.5) / count);
 }
 
 PlanePicture matrixSlice(const Session& session, const volume::DatasetInfo& info, const SliceMatrixView& view,
                          const SliceAxes& axes, int channel, int plane) {
-    return axisPlane(session, info, axes, planePosition(info.bounds, axes.normal, plane, view.planes),
+    return axisPlane(session, info, axes, planePosition(info, axes.normal, plane, view.planes),
                      {.channel = channel, .plain = true});
 }
 

@@ -44,7 +44,7 @@ void drawSlicesTools(ViewContext& context, SlicesView& view, const Readout& read
 
 /// The stretch of the box, if it has one, at the end of the line of tools.
 void drawStretch(const ViewContext& context) {
-    const std::string whole = stretchText(context.session.stretch);
+    const std::string whole = stretchText(context.session.stretch, context.source->info().lattice.axes);
     if (whole.empty()) return;
     if (ImGui::GetCursorPosY() > ImGui::GetCursorStartPos().y) ImGui::SameLine();
     const float room = ImGui::GetContentRegionAvail().x - em();
@@ -78,8 +78,9 @@ SliceRoom roomOfSlice(const ThreeSlices& slices, const SliceLayout& layout, std:
     const TitlePlace title = layout.beside[index] ? TitlePlace::Beside : TitlePlace::Elsewhere;
     for (const PlanePicture& each : slices)
         for (const TitlePlace place : {title, TitlePlace::Nowhere}) // the title may find no room
-            room.axes.left = std::max(room.axes.left, axisRoom(AxisSide::Left, each.shownY(), place));
-    const float below = axisRoom(AxisSide::Bottom, slices[index].shownX(), TitlePlace::Elsewhere);
+            room.axes.left = std::max(room.axes.left, axisRoom(AxisSide::Left, each.shownY(), place, each.up.scale()));
+    const float below =
+        axisRoom(AxisSide::Bottom, slices[index].shownX(), TitlePlace::Elsewhere, slices[index].right.scale());
     const SliceMargins around = sliceMargins(layout, static_cast<int>(index), room.axes.left / em(), below / em());
     room.lo = {min.x + around.left * em(), min.y + around.top * em()};
     room.hi = {max.x - around.right * em(), max.y - around.bottom * em()};
@@ -106,8 +107,12 @@ double scaleOfSlice(const ThreeSlices& slices, const SliceLayout& layout, std::s
 void drawSliceTitle(SliceRoom& room, const PlanePicture& slice, const volume::DatasetInfo& info, const PlotFrame* plot,
                     bool numbered) {
     const int axis = slice.axes->normal;
-    const auto& [name, unit] = slice.positions[static_cast<std::size_t>(axis)];
-    const double at = slice.plane.at[axis] * unit.perUnit, digits = info.bounds.size()[axis] * unit.perUnit / 1000;
+    const AxisLabel& label = slice.positions[static_cast<std::size_t>(axis)];
+    const std::string& name = label.name;
+    const LengthUnit& unit = label.unit;
+    const glm::dvec3 position = slice.maps.toSpace(slice.plane.at);
+    const double at = position[axis] * unit.perUnit;
+    const double digits = tellingLength(info, axis, position, 1e-3) * unit.perUnit;
     const std::string whole = name + " = " + formatQuantity(at, unit.name, digits);
     const bool beside = room.axes.beside && plot;
     const float left = beside ? plot->max.x + em() * 0.5f : room.axes.min.x; // where it stands beside the picture

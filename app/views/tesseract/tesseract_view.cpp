@@ -206,6 +206,7 @@ bool updateCloud(ViewContext& context, const std::string& pane, TesseractCache& 
 
     const volume::Channel& shown = channels[static_cast<std::size_t>(channel)];
     style.bounds = info.bounds;
+    style.axes = info.lattice.axes;
     style.half = halfOf(view, info.bounds, session.stretch);
     style.fourth = fourth ? info.channelRange(channels[static_cast<std::size_t>(*fourth)])
                           : Range{info.times.front(), info.times.back()};
@@ -252,7 +253,7 @@ void drawReading(ViewContext& context, const TesseractView& view, const Tesserac
     std::string text = known.name + " = " + formatQuantity(value, known.unit, (range.hi - range.lo) / 2000);
     for (int axis = 0; axis < 3; ++axis)
         text += (axis == 0 ? "\n" : ", ") +
-                formatNumber(place[axis] * unit.perUnit, info.bounds.size()[axis] * unit.perUnit / 500);
+                formatNumber(place[axis] * unit.perUnit, tellingLength(info, axis, place, 1.0 / 500) * unit.perUnit);
     text += " " + prettyUnit(unit.name);
     if (info.times.size() > 1) text += "\n" + timeText(info, time);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -278,9 +279,12 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     const volume::DatasetInfo& info = context.source->info();
     const PlotColors colors = plotColors();
     if (context.decoration.axes) drawAxisNames4(draw, frame);
+    std::string title = nearText(frame);
+    if (const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes); !uneven.empty())
+        title += "; " + uneven;
     if (context.decoration.title) // above the legends: at the left it would lie over the body
-        addFittedWithBackdrop(draw, {max.x - em() * 0.5f, frame.min.y + em() * 0.4f}, {1, 0}, colors.faint,
-                              nearText(frame), max.x - frame.min.x - em());
+        addFittedWithBackdrop(draw, {max.x - em() * 0.5f, frame.min.y + em() * 0.4f}, {1, 0}, colors.faint, title,
+                              max.x - frame.min.x - em());
     if (!view.showLegend || !context.decoration.legend) return;
     const std::optional<int> fourth = fourthChannel(info, view);
     std::vector<LegendEntry> entries;

@@ -154,7 +154,7 @@ public:
         list_ = ImGui::GetWindowDrawList();
         list_->PushClipRect(picture_.min, max(), true);
         addPicture(*list_, status.texture, picture_.min, max());
-        const SpaceFrame space = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
+        const SpaceFrame space = spaceFrame(picture_.min, max(), session_.camera, info_, session_.stretch);
         drawObjects(space);
         if (!request.moving) placeCorners(space);
         const AxisLabels labels = axisLabels(session_, info_);
@@ -187,7 +187,7 @@ private:
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         cache_.hand.blocked =
             hasTriad_ && hovered && std::hypot(mouse.x - triadAt_.x, mouse.y - triadAt_.y) < triad_ + em() * 0.5f;
-        const SpaceFrame before = spaceFrame(picture_.min, max(), session_.camera, info_.bounds, session_.stretch);
+        const SpaceFrame before = spaceFrame(picture_.min, max(), session_.camera, info_, session_.stretch);
         const bool free = hovered && !cache_.hand.dragging() && !cache_.hand.blocked, lenses = view_.showLenses;
         const bool forLens = ImGui::GetIO().KeyAlt; // also where a dot of something else lies over it
         const bool onHandle = lenses && !cache_.lens.active &&
@@ -287,7 +287,7 @@ private:
     /// Writes the stretch of the data, that axes are not shown as they lie, and the time shown in exported pictures and
     /// where it is the view's own.
     void drawTexts() {
-        std::string text = stretchText(session_.stretch);
+        std::string text = stretchText(session_.stretch, info_.lattice.axes);
         if (volume::isStraightened(info_.notes))
             text += (text.empty() ? "" : ", ") + std::string("oblique axes, shown straight");
         if (!text.empty()) {
