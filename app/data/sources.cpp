@@ -9,12 +9,14 @@
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 #include "volume/derived/other_source.h"
+#include "volume/field/own_axes.h"
 #include "volume/field/quantities.h"
 #include "volume/import/import.h"
 #include "volume/import/over_time.h"
 #include "volume/sources/alternating_source.h"
 #include "volume/sources/axis_source.h"
 #include "volume/sources/centred_source.h"
+#include "volume/sources/even_source.h"
 #include "volume/sources/labelled_source.h"
 #include "volume/sources/memory_source.h"
 #include "volume/sources/originals.h"
@@ -47,12 +49,21 @@ volume::MemorySourceOptions onGrid(int brickSize = volume::MemorySourceOptions{}
     return {.lattice = volume::LatticeKind::CC, .brickSize = brickSize, .budget = kFramesLoaded};
 }
 
+/// Samples on the even grid over the box of uneven axes. Frames are resampled as a whole: so many samples have room.
+std::shared_ptr<const volume::BrickSource> toScale(const std::shared_ptr<const volume::BrickSource>& numbers) {
+    const double samples = double(numbers->info().lattice.count());
+    const volume::EvenLimits limits{.samples = std::clamp(8 * samples, 4e6, 16e6)};
+    return volume::makeMemorySource(volume::onEvenGrid(numbers, limits), onGrid());
+}
+
 /// Samples as pictures draw them; as they are where they lie on no regular grid, or on another machine, from which the
 /// bricks around those that are seen would have to come, too.
 std::shared_ptr<const volume::BrickSource> drawnOn(const std::shared_ptr<const volume::BrickSource>& numbers,
                                                    PictureLattice lattice,
                                                    const volume::BrickSource* former = nullptr) {
-    if (lattice == PictureLattice::Grid || numbers->info().remote || !volume::canBeCentred(*numbers)) return numbers;
+    if (drawsToScale(lattice, numbers->info())) return toScale(numbers);
+    if (lattice != PictureLattice::BodyCentred || numbers->info().remote || !volume::canBeCentred(*numbers))
+        return numbers;
     return volume::makeCentredSource(numbers, kBricksMade, former);
 }
 
@@ -240,7 +251,9 @@ template <class Change> Sources changed(const Sources& before, const Change& cha
     out.numbers = change(before.numbers);
     if (before.packed) out.packed = change(before.packed);
     const auto drawnFrom = volume::centredFrom(*before.pictures);
-    if (drawnFrom && (drawnFrom == before.numbers || drawnFrom == before.packed))
+    if (latticeOf(before) == PictureLattice::Even)
+        out.pictures = drawnOn(before.packed ? out.packed : out.numbers, PictureLattice::Even);
+    else if (drawnFrom && (drawnFrom == before.numbers || drawnFrom == before.packed))
         out.pictures = drawnOn(drawnFrom == before.numbers ? out.numbers : out.packed, PictureLattice::BodyCentred,
                                before.pictures.get());
     else
@@ -350,7 +363,20 @@ double storedBytes(const std::shared_ptr<const volume::BrickSource>& pictures) {
 }
 
 PictureLattice firstLattice(PictureLattice usual, const volume::DatasetInfo& numbers) {
-    return numbers.lattice.isEven() ? usual : PictureLattice::Grid;
+    constexpr double kStrong = 4; // mean length of the cells along an axis, in the least
+    if (numbers.lattice.isEven()) return usual;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!numbers.lattice.axes[axis]) continue;
+        const double least = volume::cellLengthsAlong(numbers.lattice, axis).least;
+        if (least * kStrong < std::abs(numbers.lattice.spacing[axis])) return PictureLattice::Grid;
+    }
+    return drawsToScale(PictureLattice::Even, numbers) ? PictureLattice::Even : PictureLattice::Grid;
+}
+
+PictureLattice latticeOf(const Sources& sources) {
+    if (sources.pictures == sources.numbers || sources.pictures == sources.packed) return PictureLattice::Grid;
+    const bool even = sources.pictures->info().lattice.isEven() && !sources.numbers->info().lattice.isEven();
+    return even ? PictureLattice::Even : PictureLattice::BodyCentred;
 }
 
 Sources drawnOn(PictureLattice lattice, const Sources& sources) {

@@ -84,7 +84,7 @@ Sources readAgain(const DataRef& data, const Sources& shown) {
     }
     const auto joined = numbers.joined();
     const Sources again{joined, joined, std::move(origin)};
-    return shown.pictures == shown.numbers ? again : drawnOn(PictureLattice::BodyCentred, again);
+    return shown.pictures == shown.numbers ? again : drawnOn(latticeOf(shown), again);
 }
 
 /// Describes what a grown archive has gained; "" = nothing.

@@ -39,7 +39,7 @@ bool showsDataFiles(const Document& document) {
 
 OpenRequest DataFollower::withChoices(OpenRequest request) const {
     const std::string chosen = rememberedChoice(options_.stateFolder, kLatticeChoice);
-    for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred})
+    for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred, PictureLattice::Even})
         if (chosen == kPictureLatticeNames[std::size_t(lattice)]) {
             request.lattice = lattice;
             if (request.data && request.paths.empty() && request.data->files.empty()) request.data->lattice = lattice;

@@ -77,15 +77,20 @@ vis::Scene sceneOf(const Session& session) {
     return scene;
 }
 
+bool drawsToScale(PictureLattice lattice, const volume::DatasetInfo& info) {
+    return lattice == PictureLattice::Even && !info.lattice.isEven() && info.lattice.kind == volume::LatticeKind::CC;
+}
+
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info) {
-    const vis::WorldFrame frame = vis::worldFrame(info, session.stretch);
+    vis::WorldFrame frame = vis::worldFrame(info, session.stretch);
+    if (drawsToScale(session.data.lattice, info)) frame.axes = {};
     return {vis::placeLenses(session.lenses, frame, session.camera, session.cursor), frame};
 }
 
 vis::LensSpace brushSpace(const Session& session, const volume::DatasetInfo& info) {
     if (vis::selectsLens(session.selection)) return lensSpace(session, info);
     vis::LensSpace space;
-    space.frame.axes = info.lattice.axes;
+    if (!drawsToScale(session.data.lattice, info)) space.frame.axes = info.lattice.axes;
     return space;
 }
 

@@ -39,8 +39,9 @@ struct DataFile {
 };
 
 /// Lattice of pictures of regular grids, of files and archives. Numbers always come from the samples of the grid.
-enum class PictureLattice { Grid, BodyCentred };
-inline constexpr std::string_view kPictureLatticeNames[] = {"grid", "bodyCentred"};
+/// Of a grid with uneven axes, `Grid` draws each cell as thick as any other, `Even` to scale.
+enum class PictureLattice { Grid, BodyCentred, Even };
+inline constexpr std::string_view kPictureLatticeNames[] = {"grid", "bodyCentred", "even"};
 
 /// What is shown of an archive on D4*: both of its grids at every time, or the stored times of one grid.
 enum class ShownGrids { Both, First, Second };
@@ -87,8 +88,9 @@ struct DataRef {
         visit(self.lattice,
               FieldInfo{.key = "lattice",
                         .doc = "Lattice that pictures are drawn from: the grid of the data as it is, or body-centred "
-                               "with 70.7 % of the samples, corrected by what they leave of those of the grid; "
-                               "numbers always come from the grid",
+                               "with 70.7 % of the samples, corrected by what they leave of those of the grid; where "
+                               "spacing is uneven, the first two draw all cells equally thick, and even draws them to "
+                               "scale; numbers always come from the grid",
                         .names = kPictureLatticeNames});
         visit(self.grids,
               FieldInfo{.key = "grids",
@@ -221,6 +223,9 @@ std::string firstChannel(const volume::DatasetInfo& info);
 
 /// The name of a layer: the user's, else what it shows, "T surface", "T volume", "T slice z", "U flow".
 std::string layerName(const vis::Layer& layer);
+
+/// Whether pictures of data with uneven axes are to scale: resampled to an even grid, which BCC data are not.
+bool drawsToScale(PictureLattice lattice, const volume::DatasetInfo& info);
 
 /// The session's lenses in the space of its data.
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info);

@@ -150,20 +150,28 @@ std::vector<Command> timeCommands(Workbench& workbench) {
 
 std::vector<Command> latticeCommands(Workbench& workbench) {
     std::vector<Command> commands;
-    for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred})
+    struct Lattice {
+        PictureLattice lattice;
+        const char* name;
+    };
+    for (const auto& [lattice, name] :
+         {Lattice{PictureLattice::Grid, "-Draw on the grid of the file"},
+          {PictureLattice::BodyCentred, "Draw on the body-centred lattice (70.7 % of the samples)"},
+          {PictureLattice::Even, "Draw grids with uneven spacing to scale"}})
         commands.push_back(
             {.menu = "Edit",
-             .name = lattice == PictureLattice::Grid ? "-Draw on the grid of the file"
-                                                     : "Draw on the body-centred lattice (70.7 % of the samples)",
+             .name = name,
              .help =
                  "Choose the lattice that pictures are drawn from; numbers always come from the samples of the file",
-             .words = "cartesian bcc cc resample",
+             .words = "cartesian bcc cc resample cells layers thickness",
              .run = [&workbench, lattice] { workbench.session().data.lattice = lattice; },
              .enabled =
-                 [&workbench] {
+                 [&workbench, lattice] {
                      const Document& document = workbench.document();
-                     return document.loaded() && canChooseLattice(document.session().data, *document.sources().numbers,
-                                                                  document.sources().origin);
+                     if (!document.loaded()) return false;
+                     const volume::BrickSource& numbers = *document.sources().numbers;
+                     return canChooseLattice(document.session().data, numbers, document.sources().origin) &&
+                            (lattice != PictureLattice::Even || drawsToScale(lattice, numbers.info()));
                  },
              .checked = [&workbench, lattice] { return workbench.session().data.lattice == lattice; }});
     struct Grids {

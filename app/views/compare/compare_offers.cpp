@@ -164,12 +164,17 @@ std::vector<CompareOffers> compareOffers(const Session& session, const volume::D
                            ofNames("/render/proxy", vis::kProxyNames, std::size_t(session.render.proxy)))));
     const DataRef& data = session.data;
     const bool grid = data.lattice == PictureLattice::Grid;
-    if (!grid || info.lattice.kind == volume::LatticeKind::CC) {
-        const char* name = grid ? "BCC" : "CC";
-        groups.push_back(
-            technique(oneByOne("The other lattice", name,
-                               {changed(name, "/data/lattice", std::string(kPictureLatticeNames[grid ? 1 : 0]))})));
-    }
+    const auto offer = [&](const char* name, PictureLattice other) {
+        groups.push_back(technique(
+            oneByOne("The other lattice", name,
+                     {changed(name, "/data/lattice", std::string(kPictureLatticeNames[std::size_t(other)]))})));
+    };
+    if (data.lattice == PictureLattice::Even)
+        offer("By cells", PictureLattice::Grid);
+    else if (grid && !info.lattice.isEven())
+        offer("To scale", PictureLattice::Even);
+    else if (!grid || info.lattice.kind == volume::LatticeKind::CC)
+        offer(grid ? "BCC" : "CC", grid ? PictureLattice::BodyCentred : PictureLattice::Grid);
     std::erase_if(groups, [](const CompareOffers& group) { return group.offers.empty(); });
     return groups;
 }
