@@ -39,6 +39,15 @@ glm::ivec3 parseGrid(const std::string& text) {
     return {values[0], values[1], values[2]};
 }
 
+/// A choice by its name, or the size of an even grid.
+void chooseGrid(const std::string& text, volume::ImportOptions& options) {
+    const auto named = std::ranges::find(volume::kGridChoiceNames, text);
+    if (named == std::end(volume::kGridChoiceNames))
+        options.gridSize = parseGrid(text);
+    else
+        options.grid = volume::GridChoice(named - std::begin(volume::kGridChoiceNames));
+}
+
 } // namespace
 
 std::vector<std::string> importArguments(const volume::ImportOptions& options) {
@@ -90,14 +99,7 @@ void addImportOptions(CLI::App& command, volume::ImportOptions& options) {
         ->group("Import");
     command
         .add_option_function<std::string>(
-            "--grid",
-            [&options](const std::string& text) {
-                const auto named = std::ranges::find(volume::kGridChoiceNames, text);
-                if (named == std::end(volume::kGridChoiceNames))
-                    options.gridSize = parseGrid(text);
-                else
-                    options.grid = volume::GridChoice(named - std::begin(volume::kGridChoiceNames));
-            },
+            "--grid", [&options](const std::string& text) { chooseGrid(text, options); },
             "Samples of meshes: planes (between those where cells begin and end, so that layers keep their thickness; "
             "the default), even (at even distances, as many as cells), or an even grid XxYxZ; of grids with uneven "
             "spacing, planes keeps them as they are")

@@ -4,6 +4,7 @@
 #include "app/data/first_view.h"
 #include "app/data/format.h"
 #include "app/data/packing_errors.h"
+#include "app/data/picture_lattice.h"
 #include "app/data/picture_session.h"
 #include "app/described/within_ranges.h"
 #include "app/user_files/import_memory.h"

@@ -1,5 +1,6 @@
 #include "app/data/sources.h"
 
+#include "app/data/picture_lattice.h"
 #include "app/edits/compare_files.h"
 #include "app/history/session_file.h"
 #include "codec/archive/archive.h"
@@ -9,14 +10,12 @@
 #include "volume/base/byte_text.h"
 #include "volume/base/error.h"
 #include "volume/derived/other_source.h"
-#include "volume/field/own_axes.h"
 #include "volume/field/quantities.h"
 #include "volume/import/import.h"
 #include "volume/import/over_time.h"
 #include "volume/sources/alternating_source.h"
 #include "volume/sources/axis_source.h"
 #include "volume/sources/centred_source.h"
-#include "volume/sources/even_source.h"
 #include "volume/sources/labelled_source.h"
 #include "volume/sources/memory_source.h"
 #include "volume/sources/originals.h"
@@ -43,28 +42,10 @@ bool isArchive(const DataRef& data) {
 
 namespace {
 
-constexpr std::size_t kFramesLoaded = std::size_t(1) << 30, kBricksMade = std::size_t(1) << 29; // bytes kept
+constexpr std::size_t kFramesLoaded = std::size_t(1) << 30; // bytes kept
 
 volume::MemorySourceOptions onGrid(int brickSize = volume::MemorySourceOptions{}.brickSize) {
     return {.lattice = volume::LatticeKind::CC, .brickSize = brickSize, .budget = kFramesLoaded};
-}
-
-/// Samples on the even grid over the box of uneven axes. Frames are resampled as a whole: so many samples have room.
-std::shared_ptr<const volume::BrickSource> toScale(const std::shared_ptr<const volume::BrickSource>& numbers) {
-    const double samples = double(numbers->info().lattice.count());
-    const volume::EvenLimits limits{.samples = std::clamp(8 * samples, 4e6, 16e6)};
-    return volume::makeMemorySource(volume::onEvenGrid(numbers, limits), onGrid());
-}
-
-/// Samples as pictures draw them; as they are where they lie on no regular grid, or on another machine, from which the
-/// bricks around those that are seen would have to come, too.
-std::shared_ptr<const volume::BrickSource> drawnOn(const std::shared_ptr<const volume::BrickSource>& numbers,
-                                                   PictureLattice lattice,
-                                                   const volume::BrickSource* former = nullptr) {
-    if (drawsToScale(lattice, numbers->info())) return toScale(numbers);
-    if (lattice != PictureLattice::BodyCentred || numbers->info().remote || !volume::canBeCentred(*numbers))
-        return numbers;
-    return volume::makeCentredSource(numbers, kBricksMade, former);
 }
 
 /// Packs a data set with these options into a temporary archive, to show the effect of packing.
@@ -360,17 +341,6 @@ double storedBytes(const std::shared_ptr<const volume::BrickSource>& pictures) {
     const auto below = volume::underived(shown ? shown : pictures);
     const auto* archive = dynamic_cast<const codec::Archive*>(below.get());
     return archive ? double(archive->fileBytes()) : 0;
-}
-
-PictureLattice firstLattice(PictureLattice usual, const volume::DatasetInfo& numbers) {
-    constexpr double kStrong = 4; // mean length of the cells along an axis, in the least
-    if (numbers.lattice.isEven()) return usual;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (!numbers.lattice.axes[axis]) continue;
-        const double least = volume::cellLengthsAlong(numbers.lattice, axis).least;
-        if (least * kStrong < std::abs(numbers.lattice.spacing[axis])) return PictureLattice::Grid;
-    }
-    return drawsToScale(PictureLattice::Even, numbers) ? PictureLattice::Even : PictureLattice::Grid;
 }
 
 PictureLattice latticeOf(const Sources& sources) {

@@ -52,10 +52,6 @@ Sources underived(const Sources& sources);
 /// archive stores.
 bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, const NumberOrigin& origin);
 
-/// The lattice that pictures of data are first drawn on, where none was chosen. Of uneven axes by cells where the
-/// shortest cell is below a quarter of the mean one, so that thin layers are seen, else to scale; not body-centred,
-/// since layers of a cell lie on one half of that lattice only and borders would look like a zigzag.
-PictureLattice firstLattice(PictureLattice usual, const volume::DatasetInfo& numbers);
 /// The lattice that the pictures of data are drawn on.
 PictureLattice latticeOf(const Sources& sources);
 /// The same data drawn on another lattice; nothing is read again.

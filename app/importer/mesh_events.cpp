@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <vector>
+#include <vtkCellType.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
 
@@ -84,6 +88,50 @@ struct Collected {
     }
 };
 
+/// Volume of a cell with flat or slightly bent faces, as tetrahedra; nothing for polyhedra and curved cells.
+std::optional<double> volumeOf(vtkDataSet* mesh, vtkIdType cell, vtkIdList* points) {
+    using Tetrahedron = std::array<int, 4>;
+    static constexpr Tetrahedron kTetra[] = {{0, 1, 2, 3}}, kPyramid[] = {{0, 1, 2, 4}, {0, 2, 3, 4}},
+                                 kWedge[] = {{0, 1, 2, 3}, {1, 2, 3, 4}, {2, 3, 4, 5}};
+    static constexpr Tetrahedron kHexahedron[] = {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6},
+                                                  {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
+    static constexpr Tetrahedron kVoxel[] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
+                                             {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+    std::span<const Tetrahedron> parts;
+    switch (mesh->GetCellType(cell)) {
+    case VTK_TETRA:
+        parts = kTetra;
+        break;
+    case VTK_PYRAMID:
+        parts = kPyramid;
+        break;
+    case VTK_WEDGE:
+        parts = kWedge;
+        break;
+    case VTK_HEXAHEDRON:
+        parts = kHexahedron;
+        break;
+    case VTK_VOXEL:
+        parts = kVoxel;
+        break;
+    default:
+        return std::nullopt;
+    }
+    mesh->GetCellPoints(cell, points);
+    const auto corner = [&](int i) {
+        double place[3];
+        mesh->GetPoint(points->GetId(i), place);
+        return glm::dvec3(place[0], place[1], place[2]);
+    };
+    double volume = 0;
+    for (const Tetrahedron& part : parts) {
+        const glm::dvec3 from = corner(part[0]);
+        volume +=
+            std::abs(glm::dot(corner(part[1]) - from, glm::cross(corner(part[2]) - from, corner(part[3]) - from)));
+    }
+    return volume / 6;
+}
+
 /// Whether a cell is a box along the axes, to 1e-3 of its edges.
 bool isBox(vtkDataSet* mesh, vtkIdType cell, const glm::dvec3& lo, const glm::dvec3& hi, vtkIdList* points) {
     mesh->GetCellPoints(cell, points);
@@ -114,6 +162,8 @@ void describeCells(vtkDataSet* mesh, std::size_t most, volume::FileBlock& block)
     std::array<Collected, 3> collected;
     block.cells = 0;
     block.boxes = true;
+    block.volume = 0;
+    bool hasVolume = true;
     vtkNew<vtkIdList> points;
     for (vtkIdType c = 0; c < mesh->GetNumberOfCells(); ++c) {
         if (!volume::isPresent(present, std::size_t(c))) continue;
@@ -125,6 +175,9 @@ void describeCells(vtkDataSet* mesh, std::size_t most, volume::FileBlock& block)
         const glm::dvec3 extent = glm::max(most3 - least, 1e-7 * largest);
         inverse += 1.0 / extent;
         ++block.cells;
+        const std::optional<double> volume = volumeOf(mesh, c, points);
+        hasVolume = hasVolume && volume;
+        block.volume += volume.value_or(0);
         block.boxes = block.boxes && isBox(mesh, c, least, most3, points);
         for (int axis = 0; axis < 3; ++axis) {
             const double area = extent[(axis + 1) % 3] * extent[(axis + 2) % 3], perLength = 1 / extent[axis];
@@ -135,6 +188,7 @@ void describeCells(vtkDataSet* mesh, std::size_t most, volume::FileBlock& block)
         }
     }
     if (block.cells < 1) throw std::runtime_error("holds no cells that are data, only ghosts of other pieces");
+    if (!hasVolume) block.volume = 0;
     block.box = {lo, hi};
     block.cellSize = glm::dvec3(block.cells) / inverse;
     for (std::size_t axis = 0; axis < 3; ++axis) block.events[axis] = collected[axis].atMost(most);

@@ -7,7 +7,8 @@
 
 namespace tessera::importer {
 
-/// Counts the cells of a mesh that are data: their number, their box, the harmonic mean of their extents per axis,
+/// Counts the cells of a mesh that are data: their number, their box and volume (0 where there are polyhedra or curved
+/// cells), the harmonic mean of their extents per axis,
 /// whether all are boxes along the axes, and where they begin and end along each axis. Places closer than 2 % of their
 /// cells are one; there are at most `most` an axis, closer ones are joined first. Throws std::runtime_error where no
 /// cell is data.

@@ -78,7 +78,8 @@ vis::Scene sceneOf(const Session& session) {
 }
 
 bool drawsToScale(PictureLattice lattice, const volume::DatasetInfo& info) {
-    return lattice == PictureLattice::Even && !info.lattice.isEven() && info.lattice.kind == volume::LatticeKind::CC;
+    return lattice == PictureLattice::Even && !info.lattice.isEven() && info.lattice.kind == volume::LatticeKind::CC &&
+           !info.remote;
 }
 
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info) {

@@ -224,7 +224,8 @@ std::string firstChannel(const volume::DatasetInfo& info);
 /// The name of a layer: the user's, else what it shows, "T surface", "T volume", "T slice z", "U flow".
 std::string layerName(const vis::Layer& layer);
 
-/// Whether pictures of data with uneven axes are to scale: resampled to an even grid, which BCC data are not.
+/// Whether pictures of data with uneven axes are to scale: resampled to an even grid, which BCC data and those on
+/// another machine are not.
 bool drawsToScale(PictureLattice lattice, const volume::DatasetInfo& info);
 
 /// The session's lenses in the space of its data.

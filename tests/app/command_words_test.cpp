@@ -42,7 +42,7 @@ TEST(CommandWords, AWrongValueIsSaidWithItsOption) {
     refused({"generate", "fuel-cell", "--size", "8x8", "-o", file}, "--size: expected NXxNYxNZ, not \"8x8\"");
     refused({"generate", "fuel-cell", "--size", "8xx8", "-o", file}, "--size: expected NXxNYxNZ, not \"8xx8\"");
     refused({"generate", "fuel-cell", "--set", "nx", "-o", file}, "--set: expected KEY=NUMBER, not \"nx\"");
-    refused({"pack", "nothing.vti", "--grid", "8x8", "-o", file}, "--grid: needs XxYxZ, not \"8x8\"");
+    refused({"pack", "nothing.vti", "--grid", "8x8", "-o", file}, "--grid: needs planes, even, or XxYxZ, not \"8x8\"");
     for (const char* grid : {"0x8x8", "8x4097x8", "8x8x-1"})
         refused({"pack", "nothing.vti", "--grid", grid, "-o", file}, "--grid: each size must be 1..4096");
     for (const char* variant : {"later: /time", "later: time=1", "later: /time=1; time=2"})

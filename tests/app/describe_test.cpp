@@ -7,6 +7,7 @@
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
+#include "volume/synthetic/membrane.h"
 
 #include <cstdlib>
 #include <cxxabi.h>
@@ -80,6 +81,7 @@ std::vector<DescribedStruct> everyStruct() {
     list.add<volume::FuelCellSettings>();
     list.add<volume::MarschnerLobbSettings>();
     list.add<volume::CastingSettings>();
+    list.add<volume::MembraneSettings>();
     std::vector<DescribedStruct> all;
     for (const auto& [name, each] : found) all.push_back(each);
     return all;

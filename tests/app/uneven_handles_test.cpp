@@ -1,3 +1,4 @@
+#include "app/data/picture_lattice.h"
 #include "app/data/sources.h"
 #include "app/history/session_file.h"
 #include "app/pane/view_parts.h"

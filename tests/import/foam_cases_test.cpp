@@ -64,6 +64,22 @@ TEST_F(FoamCases, RegionsAreRead) {
     EXPECT_EQ(opened.about("region").labels.size(), 3u);
 }
 
+// Layers as they are: the membrane of two cells, 50 um of 2.45 mm, has two samples as thick as its cells.
+TEST_F(FoamCases, AThinRegionKeepsItsCellsAndItsVolume) {
+    const OpenedCase opened = openCase("foam/thin_membrane/fc.foam");
+    EXPECT_EQ(opened.info().lattice.size, glm::ivec3(20, 6, 20));
+    EXPECT_EQ(opened.present("lambda", 0), 240u);
+    EXPECT_EQ(opened.present("region", 0), 2400u);
+    EXPECT_FALSE(opened.isNoted("volume than its cells have"));
+    EXPECT_TRUE(opened.isNoted("one sample for each cell"));
+
+    ImportOptions coarse; // 18 slices of 136 um
+    coarse.gridSize = {20, 6, 18};
+    const OpenedCase other = openCase("foam/thin_membrane/fc.foam", coarse);
+    EXPECT_TRUE(other.isNoted("region electrolyte is sampled with") ||
+                other.isNoted("region electrolyte has no sample"));
+}
+
 TEST_F(FoamCases, FormsOfCellsAreTheSame) {
     for (const char* name : {"cells_binary", "cells_decomposed", "cells_collated"}) {
         const OpenedCase opened = openCase("foam/" + std::string(name));

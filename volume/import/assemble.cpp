@@ -336,7 +336,7 @@ Assembled assemble(std::vector<OpenedFile> files, const ImportOptions& options, 
     if (!found.anyLabel && found.blocks > 1 && !named) {
         Parameter region{"region", "", 1, ScalarType::U8, true, {}, {}};
         if (readSamples) {
-            all->label = labelOfBlocks(all->groups, all->lattice, result.notes, progress);
+            all->label = labelOfBlocks(all->groups, all->lattice, info.bounds, result.notes, progress);
             region.labels = all->label.labels;
         }
         info.parameters.push_back(std::move(region));

@@ -3,6 +3,9 @@
 #include "volume/base/error.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <map>
 #include <utility>
 
@@ -23,10 +26,43 @@ std::vector<std::uint8_t> coverOf(const FileGroup& group, const GroupBlock& bloc
     return {};
 }
 
+/// Lengths of the cells of samples along an axis, within the box.
+std::vector<double> cellsAlong(const Lattice& lattice, const Box& bounds, int axis) {
+    const auto border = [&](int i) {
+        const double place = lattice.axes.toSpace(axis, lattice.origin[axis] + lattice.spacing[axis] * (i - 0.5));
+        return std::clamp(place, bounds.lo[axis], std::max(bounds.lo[axis], bounds.hi[axis]));
+    };
+    std::vector<double> lengths;
+    for (int i = 0; i < lattice.size[axis]; ++i) lengths.push_back(border(i + 1) - border(i));
+    return lengths;
+}
+
+/// Says where the samples of a block have another volume than its cells.
+void noteVolume(const GroupBlock& block, const std::vector<std::uint8_t>& cover, const Lattice& lattice,
+                const Box& bounds, std::vector<std::string>& notes) {
+    constexpr double kTold = 0.02;
+    const FileBlock& form = block.form;
+    if (!form.mesh || !(form.volume > 0)) return;
+    std::array<std::vector<double>, 3> lengths;
+    for (int axis = 0; axis < 3; ++axis) lengths[std::size_t(axis)] = cellsAlong(lattice, bounds, axis);
+    double sampled = 0;
+    std::size_t i = 0;
+    for (const double z : lengths[2])
+        for (const double y : lengths[1])
+            for (const double x : lengths[0]) sampled += cover[i++] != 0 ? x * y * z : 0;
+    const double more = sampled / form.volume - 1;
+    if (!(std::abs(more) > kTold)) return;
+    char text[160];
+    std::snprintf(text, sizeof text, " is sampled with %.2g %% %s volume than its cells have: %.4g, not %.4g",
+                  100 * std::abs(more), more > 0 ? "more" : "less", sampled, form.volume);
+    const std::string unit = form.lengthUnit.empty() ? "" : " " + form.lengthUnit + "^3";
+    notes.push_back("region " + form.name + text + unit);
+}
+
 } // namespace
 
-BlockLabel labelOfBlocks(const std::vector<FileGroup>& groups, const Lattice& lattice, std::vector<std::string>& notes,
-                         const Progress& progress) {
+BlockLabel labelOfBlocks(const std::vector<FileGroup>& groups, const Lattice& lattice, const Box& bounds,
+                         std::vector<std::string>& notes, const Progress& progress) {
     struct Block {
         std::string name;
         std::vector<std::uint8_t> cover;
@@ -44,6 +80,7 @@ BlockLabel labelOfBlocks(const std::vector<FileGroup>& groups, const Lattice& la
                                 " has no sample: it is thinner than the samples are apart");
                 continue;
             }
+            noteVolume(block, cover, lattice, bounds, notes);
             for (std::size_t i = 0; i < anywhere.size(); ++i) anywhere[i] |= cover[i];
             blocks.push_back({block.form.name, std::move(cover)});
         }

@@ -19,8 +19,9 @@ struct BlockLabel {
 };
 
 /// Labels each sample with the set of blocks that cover it. A block that covers every sample adds no information and is
-/// left out. One without a sample is named in `notes`. Throws Error for more than 255 sets.
-BlockLabel labelOfBlocks(const std::vector<FileGroup>& groups, const Lattice& lattice, std::vector<std::string>& notes,
-                         const Progress& progress);
+/// left out. Those without a sample, or whose samples have more than 2 % more or less volume within `bounds` than their
+/// cells, are named in `notes`. Throws Error for more than 255 sets.
+BlockLabel labelOfBlocks(const std::vector<FileGroup>& groups, const Lattice& lattice, const Box& bounds,
+                         std::vector<std::string>& notes, const Progress& progress);
 
 } // namespace tessera::volume

@@ -43,6 +43,7 @@ struct FileBlock {
     Box box;                          ///< extent of a mesh, or of the cells of a grid
     double cells = 0;                 ///< of a mesh, or an uneven grid
     glm::dvec3 cellSize{0};           ///< harmonic mean of the extents of these cells, per axis
+    double volume = 0;                ///< of all cells of a mesh; 0 where it is not known
     bool boxes = false;               ///< all cells of a mesh are boxes along the axes
     std::array<AxisEvents, 3> events; ///< of a mesh, per axis; empty where they are not known
     std::string lengthUnit, timeUnit, provenance; ///< "" = not stated

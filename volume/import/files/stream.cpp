@@ -141,6 +141,7 @@ void parseCells(FileBlock& block, const HeaderReader& reader) {
     for (int axis = 0; axis < 3; ++axis)
         if (block.box.lo[axis] > block.box.hi[axis] || block.cellSize[axis] < 0) reader.fail("box");
     if (!(block.cells >= 1)) reader.fail("cells");
+    if (reader.object.contains("volume")) block.volume = reader.numbers("volume", 1, 1)[0];
     block.boxes = reader.object.contains("boxes") && reader.flag("boxes");
     const auto events = reader.object.find("events");
     if (events == reader.object.end()) return;
