@@ -35,8 +35,8 @@ double correlation(const std::string& a, const std::string& b, double time) {
     formula::forEachPlace([&](Place at) {
         const auto x = formula::valueAt(a, at, time), y = formula::valueAt(b, at, time);
         if (!x || !y) return;
-        const double u = *x - 300, v = *y;
-        n += 1, sa += u, sb += v, aa += u * u, bb += v * v, ab += u * v;
+        const double u = *x - 300, v = *y, w = formula::cellShare(at);
+        n += w, sa += w * u, sb += w * v, aa += w * u * u, bb += w * v * v, ab += w * u * v;
     });
     return (ab / n - sa / n * sb / n) / std::sqrt((aa / n - sa / n * sa / n) * (bb / n - sb / n * sb / n));
 }
