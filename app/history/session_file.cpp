@@ -79,16 +79,22 @@ void migrateLattice(Json& document) {
     }
 }
 
-/// Up to schema 3 meshes and uneven grids were sampled on even grids: the numbers of such sessions stay what they were.
-void keepEvenGrid(Json& document) {
-    const auto data = document.find("data");
-    if (data == document.end() || !data->is_object()) return;
-    const auto files = data->find("files");
-    if (files == data->end() || !files->is_array() || files->empty()) return;
-    Json& import = (*data)["import"];
+void keepEvenGridOf(Json& data) {
+    const auto files = data.find("files");
+    if (files == data.end() || !files->is_array() || files->empty()) return;
+    Json& import = data["import"];
     if (import.is_null()) import = Json::object();
     if (import.is_object() && !import.contains("grid"))
         import["grid"] = volume::kGridChoiceNames[std::size_t(volume::GridChoice::Even)];
+}
+
+/// Up to schema 3 meshes and uneven grids were sampled on even grids: the samples of such sessions stay where they
+/// were.
+void keepEvenGrid(Json& document) {
+    const auto data = document.find("data");
+    if (data == document.end() || !data->is_object()) return;
+    keepEvenGridOf(*data);
+    if (const auto other = data->find("other"); other != data->end() && other->is_object()) keepEvenGridOf(*other);
 }
 
 } // namespace

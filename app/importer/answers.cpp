@@ -102,6 +102,7 @@ std::string headerJson(const std::vector<BlockRef>& blocks) {
         entry["cells"] = {block.cells};
         entry["cellSize"] = triple(block.cellSize);
         if (block.mesh) entry["boxes"] = block.boxes;
+        if (block.mesh) entry["cellArrays"] = std::ranges::any_of(ref.arrays, &ArrayRef::ofCells);
         if (block.mesh && std::isfinite(block.volume)) entry["volume"] = {block.volume};
         entry["lengthUnit"] = block.lengthUnit;
         entry["timeName"] = block.timeName;

@@ -173,6 +173,7 @@ void setAxes(BlockRef& ref, vtkRectilinearGrid* grid, bool cells) {
     volume::Lattice even;
     volume::AxisMaps axes;
     ref.block.cellData = cells;
+    ref.block.cells = 1;
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<double> planes;
         for (vtkIdType i = 0; i < places[axis]->GetNumberOfTuples(); ++i)
@@ -180,6 +181,10 @@ void setAxes(BlockRef& ref, vtkRectilinearGrid* grid, bool cells) {
         even.origin[axis] = planes.front();
         if (planes.size() < 2) continue;
         const auto count = double(planes.size() - 1);
+        double perLength = 0;
+        for (std::size_t i = 1; i < planes.size(); ++i) perLength += 1 / (planes[i] - planes[i - 1]);
+        ref.block.cells *= count;
+        ref.block.cellSize[axis] = count / perLength;
         even.spacing[axis] = (planes.back() - planes.front()) / count;
         even.size[axis] = int(planes.size()) - (cells ? 1 : 0);
         if (cells) even.origin[axis] += 0.5 * even.spacing[axis];
@@ -280,7 +285,6 @@ std::vector<BlockRef> describeBlocks(const Source& given, const std::vector<Bloc
                 std::erase_if(ref.arrays, [](const ArrayRef& array) { return array.ofCells; });
             }
         } else if (auto* grid = vtkRectilinearGrid::SafeDownCast(data); grid != nullptr && isAligned(grid)) {
-            describeCells(data, 0, ref.block);
             setAxes(ref, grid, !pointData);
         } else {
             ref.block.mesh = true;

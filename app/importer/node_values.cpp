@@ -16,6 +16,8 @@ namespace tessera::importer {
 
 namespace {
 
+constexpr std::size_t kMostAround = 64; // cells around a point that tell of a slope, of more some
+
 /// Cells with a value around each point: those of point p are cells[first[p] .. first[p + 1]).
 struct CellsOfPoints {
     std::vector<std::size_t> first;
@@ -96,8 +98,14 @@ std::vector<double> nodeValues(vtkDataSet* mesh, vtkDataArray* values, int compo
         for (std::size_t i = around.first[p]; i < around.first[p + 1]; ++i) visit(cells[std::size_t(around.cells[i])]);
     };
     const std::size_t points = around.first.size() - 1;
-    for (std::size_t p = 0; p < points; ++p)
-        cellsAt(p, [&](SlopedCell& cell) { cellsAt(p, [&](const SlopedCell& other) { cell.add(other); }); });
+    for (std::size_t p = 0; p < points; ++p) {
+        const std::size_t first = around.first[p], count = around.first[p + 1] - first;
+        const std::size_t step = std::max<std::size_t>(count / kMostAround, 1);
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t k = step; k < count; k += step)
+                cells[std::size_t(around.cells[first + i])].add(
+                    cells[std::size_t(around.cells[first + (i + k) % count])]);
+    }
     double least = std::numeric_limits<double>::max();
     for (SlopedCell& cell : cells) {
         if (std::isnan(cell.value)) continue;

@@ -97,6 +97,12 @@ bool areOf(const volume::Box& bounds, const volume::Lattice& lattice) {
         const double slack = lattice.spacing[axis] + 1e-9 * (std::abs(lo[axis]) + std::abs(hi[axis]));
         const bool near =
             std::abs(bounds.lo[axis] - lo[axis]) <= slack && std::abs(bounds.hi[axis] - hi[axis]) <= slack;
+        if (const volume::AxisMap* map = lattice.axes[axis]) { // whose box ends where its planes do
+            const double rounding = 1e-9 * (map->hi() - map->lo());
+            if (!(std::abs(bounds.lo[axis] - map->lo()) <= rounding &&
+                  std::abs(bounds.hi[axis] - map->hi()) <= rounding))
+                return false;
+        }
         if (!near || !(bounds.lo[axis] <= bounds.hi[axis])) return false; // nor if one is not finite
     }
     return true;

@@ -172,6 +172,55 @@ TEST_F(ImportMesh, GradedPointsAreSamples) {
     });
 }
 
+/// A rectilinear grid of values of cells.
+std::string vtr(const Mesh& mesh, const std::vector<double>& values) {
+    const glm::ivec3 last = mesh.points() - 1;
+    std::ostringstream out;
+    out.precision(17);
+    const auto array = [&](const char* name, const std::vector<double>& numbers) {
+        out << "<DataArray type=\"Float64\" Name=\"" << name << "\" format=\"ascii\">";
+        for (const double number : numbers) out << number << ' ';
+        out << "</DataArray>";
+    };
+    std::ostringstream extent;
+    extent << "0 " << last.x << " 0 " << last.y << " 0 " << last.z;
+    out << "<VTKFile type=\"RectilinearGrid\" version=\"1.0\" byte_order=\"LittleEndian\"><RectilinearGrid "
+           "WholeExtent=\""
+        << extent.str() << "\"><Piece Extent=\"" << extent.str() << "\"><CellData>";
+    array("T", values);
+    out << "</CellData><Coordinates>";
+    for (int axis = 0; axis < 3; ++axis) array(std::string(1, "xyz"[axis]).c_str(), mesh.corners[std::size_t(axis)]);
+    out << "</Coordinates></Piece></RectilinearGrid></VTKFile>\n";
+    return out.str();
+}
+
+// A grid is kept as it is: its axes, its values, and the box that it has, flat or not.
+TEST_F(ImportMesh, UnevenGridsKeepTheirAxes) {
+    path_.replace(path_.size() - 3, 3, "vtr");
+    std::vector<double> values;
+    forEach(kGraded.cells(), [&](glm::ivec3 at) { values.push_back((at.x * 7 + at.y * 5 + at.z * 11) % 13 - 4); });
+    const Dataset dataset = opened(vtr(kGraded, values));
+    ASSERT_EQ(dataset.info.lattice.size, kGraded.cells());
+    EXPECT_EQ(dataset.info.bounds, (Box{{0, 0, 2}, {15, 1.5, 3.17}}));
+    ASSERT_NE(dataset.info.lattice.axes[2], nullptr);
+    EXPECT_EQ(dataset.info.lattice.axes[2]->planes(), kGraded.corners[2]);
+    EXPECT_FALSE(isResampled(dataset.info));
+    const Field field = dataset.read(0, 0, 0);
+    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(field.value(i), values[i]) << i;
+
+    Mesh flat = kGraded;
+    flat.corners[2] = {0.5};
+    std::vector<double> plane(values.begin(), values.begin() + 12);
+    const Dataset sheet = opened(vtr(flat, plane));
+    EXPECT_EQ(sheet.info.lattice.size, glm::ivec3(4, 3, 1));
+    EXPECT_EQ(sheet.info.bounds, (Box{{0, 0, 0.5}, {15, 1.5, 0.5}}));
+
+    // Evenly on request: the linear course of a grid of cells stays linear.
+    const Dataset even = opened(vtr(kGraded, values), onGrid({15, 3, 20}));
+    EXPECT_EQ(even.info.lattice.size, glm::ivec3(15, 3, 20));
+    EXPECT_TRUE(even.info.lattice.isEven());
+}
+
 // A wall where cells have been graded towards it: no slope is lost, and no value leaves the course.
 TEST_F(ImportMesh, CellsOfAGradedMeshKeepALinearCourseOnAFinerGrid) {
     std::vector<double> values;

@@ -23,7 +23,7 @@ std::array<AxisEvents, 3> eventsOfBoxes(const std::vector<Box>& cells) {
             events.push_back({cell.lo[axis], 1, 0, area, 0, 1 / size[axis], 0});
             events.push_back({cell.hi[axis], 0, 1, 0, area, 0, 1 / size[axis]});
         }
-        out[std::size_t(axis)] = joinedEvents(events, {});
+        out[std::size_t(axis)] = joinedEvents(events);
     }
     return out;
 }
@@ -49,7 +49,10 @@ std::array<AxisPlanes, 3> planesOf(const std::vector<Box>& cells, std::vector<st
     PlanesOfMesh mesh;
     mesh.events = eventsOfBoxes(cells);
     mesh.box = boxOfAll(cells);
-    mesh.regions = regions;
+    for (const Box& region : regions)
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double end : {region.lo[axis], region.hi[axis]}) mesh.ends[std::size_t(axis)].push_back(end);
+    for (auto& ends : mesh.ends) std::ranges::sort(ends);
     mesh.mostSamplesOfAll = most;
     std::vector<std::string> said;
     const auto planes = planesOfMesh(mesh, notes != nullptr ? *notes : said);
@@ -159,6 +162,50 @@ TEST(MeshPlanes, TooManyAreLeftOutButNoEndsOfRegions) {
     EXPECT_THAT(notes, testing::Contains(testing::HasSubstr("lie within samples")));
 }
 
+// A membrane of 10 um beside a gasket of 100 um, between plates: it is thinner than a quarter of the mean cell there.
+TEST(MeshPlanes, AThinRegionBesideAThickOneKeepsBothOfItsEnds) {
+    std::vector<Box> cells = boxesBetween({0, 1, 2, 3, 4}, {0, 1, 2, 3, 4}, {-200, -100, 0});
+    const std::vector<Box> gasket = boxesBetween({1, 2, 3, 4}, {0, 1, 2, 3, 4}, {0, 100}),
+                           membrane = boxesBetween({0, 1}, {0, 1, 2, 3, 4}, {0, 10}),
+                           cover = boxesBetween({0, 1}, {0, 1, 2, 3, 4}, {10, 100});
+    for (const auto* part : {&gasket, &membrane, &cover}) cells.insert(cells.end(), part->begin(), part->end());
+    const auto planes = planesOf(cells, nullptr, 16e6, {boxOfAll(gasket), boxOfAll(membrane), boxOfAll(cover)});
+    EXPECT_THAT(planes[2].planes, testing::ElementsAre(-200, -100, 0, 10, 100));
+    EXPECT_FALSE(planes[2].onePerCell) << "the gasket has two samples in a cell";
+}
+
+TEST(MeshPlanes, NoLimitIsPassed) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> place(0, 1);
+    std::vector<Box> cells; // tiny ones anywhere, that reach from end to end together
+    for (int i = 0; i < 3000; ++i) {
+        const glm::dvec3 at(place(random), place(random), place(random));
+        cells.push_back({at * 0.999, at * 0.999 + 1e-3});
+    }
+    for (const double most : {1e3, 1e5}) {
+        std::vector<std::string> notes;
+        PlanesOfMesh mesh;
+        mesh.events = eventsOfBoxes(cells);
+        mesh.box = boxOfAll(cells);
+        mesh.mostSamplesOfAll = most;
+        mesh.mostSamples = glm::dvec3(64);
+        double samples = 1;
+        for (const AxisPlanes& axis : planesOfMesh(mesh, notes)) {
+            ASSERT_GE(axis.planes.size(), 2u);
+            EXPECT_LE(axis.planes.size(), 65u);
+            samples *= double(axis.planes.size() - 1);
+        }
+        EXPECT_LE(samples, most);
+    }
+    // Counts that nothing can hold: even distances, and a note.
+    PlanesOfMesh mesh;
+    mesh.box = {glm::dvec3(0), glm::dvec3(1)};
+    for (auto& events : mesh.events) events = {{0, 1, 0, 1, 0, 1e300, 0}, {1, 0, 1, 0, 1, 0, 1e300}};
+    std::vector<std::string> notes;
+    for (const AxisPlanes& axis : planesOfMesh(mesh, notes)) EXPECT_TRUE(axis.planes.empty() && !axis.aligned);
+    EXPECT_EQ(notes.size(), 3u);
+}
+
 TEST(MeshPlanes, PartsOfASplitMeshGiveThePlanesOfTheWhole) {
     const std::vector<Box> cells = boxesBetween(kX, kY, kZ);
     PlanesOfMesh mesh;
@@ -168,7 +215,10 @@ TEST(MeshPlanes, PartsOfASplitMeshGiveThePlanesOfTheWhole) {
         for (std::size_t i = 0; i < cells.size(); ++i)
             if (int(i % 7) % 4 == part) own.push_back(cells[i]);
         const auto events = eventsOfBoxes(own);
-        for (std::size_t axis = 0; axis < 3; ++axis) mesh.events[axis] = joinedEvents(mesh.events[axis], events[axis]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            mesh.events[axis].insert(mesh.events[axis].end(), events[axis].begin(), events[axis].end());
+            mesh.events[axis] = joinedEvents(mesh.events[axis]);
+        }
     }
     std::vector<std::string> notes;
     const auto planes = planesOfMesh(mesh, notes);

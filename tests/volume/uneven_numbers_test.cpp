@@ -5,6 +5,7 @@
 #include "volume/bricks/sample_cells.h"
 #include "volume/derived/derived.h"
 #include "volume/derived/other_source.h"
+#include "volume/flow/flow.h"
 #include "volume/flow/sections.h"
 #include "volume/reconstruct/probe.h"
 #include "volume/reconstruct/sample_grid.h"
@@ -115,6 +116,26 @@ TEST(UnevenProbe, AxesAreEachOfTheirKind) {
     // Samples in the middle of cells: midpoints give the integral of a linear field in z and y; points in x do, too.
     const glm::dvec3 middle = 0.5 * (box.lo + box.hi);
     EXPECT_NEAR(computeStatistics(*source, query).channels[0].all.mean, linearAt(middle), 1e-3);
+}
+
+// A region ends where its last cell does, however thin the next one is: its values reach to the wall, for all who ask.
+TEST(UnevenProbe, ValuesReachToTheWallOfTheirCells) {
+    const Lattice lattice = layeredLattice(Of::Cells);
+    const double wall = lattice.axes[2]->border(4); // cells of 5 um below, of 20 um and more above
+    for (const bool above : {true, false}) {
+        Field field = linearField(lattice);
+        test::removeWhere(field, [&](glm::dvec3 p) { return (p.z > wall) != above; });
+        const auto source = unevenSource({field});
+        const SampleGrid grid = readSamples(*source, 0, 0, 0);
+        for (const double beside : {1e-8, 1e-6, 2e-6, 4e-6, 8e-6}) {
+            for (const double sign : {1.0, -1.0}) {
+                const glm::dvec3 place(2e-3, 1e-3, wall + sign * beside);
+                const bool there = (sign > 0) == above;
+                EXPECT_EQ(probeChannel(*source, 0, place, 0).interpolated.has_value(), there) << above << beside * sign;
+                EXPECT_EQ(valueAt(grid, place).has_value(), there) << above << beside * sign;
+            }
+        }
+    }
 }
 
 // Coarser levels of a source lie on the same sheet: values between their samples are linear in space.

@@ -139,7 +139,8 @@ private:
 } // namespace
 
 std::optional<Statistics> notedStatistics(const BrickSource& source, const StatisticsQuery& query) {
-    if (query.doi || !query.pairs.empty() || query.binsByVolume) return std::nullopt;
+    // What is noted counts samples alike: where their cells are not, the mean would be far off.
+    if (query.doi || !query.pairs.empty() || query.binsByVolume || !source.grid().lattice.isEven()) return std::nullopt;
     const glm::ivec3 count = source.grid().count();
     const std::vector<Channel> channels = source.info().channels();
     const BrickVolumes volumes(source);

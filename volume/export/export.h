@@ -26,8 +26,7 @@ struct ExportSelection {
 ///         ("O2 mol/m3; T K"). Several times: OUT_0000.vti ... and OUT.pvd. A .pvd path gives the same with any number,
 ///         of uneven axes as .vtr.
 /// - .vtr  the same as a VTK rectilinear grid, whose coordinates are those of the axes bit for bit. Cell data between
-/// the
-///         planes if an axis is of cells, else point data. Of both, even axes get borders half a cell from the samples,
+///         the planes if an axis is of cells, else point data. Of both, even axes get borders half a cell from the samples,
 ///         axes of points get them in the middle between samples and have the places in field data "points_x".
 /// - .nrrd one parameter at one time, of a vector all components (a first axis of the kind "vector"), or one channel.
 /// - .raw  (or .json) samples `[time][component][z][y][x]` as stored, and the sidecar beside them that `openFiles`

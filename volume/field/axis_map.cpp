@@ -33,7 +33,7 @@ AxisMap::AxisMap(Of of, std::vector<double> planes) : of_(of), planes_(std::move
 double AxisMap::toSpace(double sheet) const {
     const double cells = (sheet - lo()) / spacing();
     const double last = double(planes_.size() - 2);
-    const double i = std::clamp(std::floor(cells), 0.0, last);
+    const double i = cells > 0 ? std::min(std::floor(cells), last) : 0; // also where the place is no number
     const double a = planes_[std::size_t(i)], b = planes_[std::size_t(i) + 1];
     return cells - i == 1 ? b : a + (cells - i) * (b - a);
 }

@@ -116,12 +116,16 @@ std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position) {
         return {present ? double(grid.values[index]) : 0.0, present};
     };
     const LevelGeometry geometry{lattice.kind, 1, 0};
-    if (grid.parts.empty()) return tetrahedral(geometry, sample, lattice.between(position)).value();
+    const glm::ivec3 near = lattice.nearest(position);
+    const auto valueOf = [&](const Blend& blend) {
+        return lattice.isEven() ? blend.value() : blend.valueInCellOf(sample(near));
+    };
+    if (grid.parts.empty()) return valueOf(tetrahedral(geometry, sample, lattice.between(position)));
     const auto partOf = [&](glm::ivec3 place) {
         return int(grid.parts[lattice.index(clampToLattice(lattice.kind, lattice.size, place))]);
     };
-    const OwnPart own(lattice, sample, partOf, lattice.nearest(position));
-    return tetrahedral(geometry, own, lattice.between(position)).value();
+    const OwnPart own(lattice, sample, partOf, near);
+    return valueOf(tetrahedral(geometry, own, lattice.between(position)));
 }
 
 std::optional<glm::dvec3> VectorGrid::at(glm::dvec3 position) const {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -39,6 +40,7 @@ struct Meshes {
     glm::dvec3 perLength{0}; ///< sum over the cells of 1 / extent
     double cells = 0;
     bool cellData = true;
+    bool cellArrays = false;
     bool moves = false; ///< then samples lie in cells, so that there are as many at each time
     std::vector<const FileBlock*> blocks;
     double blocksOfFirst = 0, cellsOfFirst = 0; ///< of the meshes of the first file of each group
@@ -129,29 +131,41 @@ bool areEven(const std::vector<double>& planes) {
     return true;
 }
 
-/// The grid between the planes of a mesh: samples in the middle of cells for cell data and where there are several
+/// The grid between the planes of a mesh: samples in the middle of cells where there are arrays of cells or several
 /// blocks, else on the planes. An axis whose planes are even, or not known, is as that of the even grid.
 ChosenGrid planeGridForMesh(const Meshes& meshes, std::vector<std::string>& notes) {
     PlanesOfMesh asked;
     asked.box = meshes.box;
-    const bool ofCells = meshes.cellData || meshes.blocksOfFirst > 1;
+    const bool ofCells = meshes.cellData || meshes.cellArrays || meshes.blocksOfFirst > 1;
     asked.mostSamplesOfAll = std::min(16e6, std::max(16 * meshes.cells, 50e3));
+    const glm::dvec3 extent = meshes.box.size();
+    const double largest = std::max({extent.x, extent.y, extent.z});
     bool areBoxes = true;
+    std::array<bool, 3> known{true, true, true};
     for (const FileBlock* block : meshes.blocks) {
-        const Box extent = extentOf(*block);
+        const Box own = extentOf(*block);
         areBoxes = areBoxes && (block->boxes || !block->mesh);
-        if (meshes.blocks.size() <= 1000) asked.regions.push_back(extent);
-        const std::array<AxisEvents, 3> events = eventsOf(*block);
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            asked.events[axis] = joinedEvents(asked.events[axis], events[axis]);
+        std::array<AxisEvents, 3> events = eventsOf(*block);
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto a = std::size_t(axis);
+            known[a] = known[a] && (events[a].size() >= 2 || !(own.size()[axis] > 1e-9 * largest));
+            asked.ends[a].insert(asked.ends[a].end(), {own.lo[axis], own.hi[axis]});
+            std::ranges::move(events[a], std::back_inserter(asked.events[a]));
+        }
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto a = std::size_t(axis);
+        std::ranges::sort(asked.ends[a]);
+        asked.events[a] = known[a] ? joinedEvents(std::move(asked.events[a])) : AxisEvents{};
+        if (!known[a])
+            notes.push_back(std::string("at even distances across ") + "xyz"[axis] +
+                            ", since cells of the mesh begin at too many places, or move");
     }
     const std::array<AxisPlanes, 3> planes = planesOfMesh(asked, notes);
     Meshes even = meshes;
     even.cellData = ofCells;
     ChosenGrid out{.lattice = evenGridForMesh(even, glm::ivec3(0)), .aligned = true, .onePerCell = meshes.cellData};
     AxisMaps axes;
-    const glm::dvec3 extent = meshes.box.size();
-    const double largest = std::max({extent.x, extent.y, extent.z});
     for (int axis = 0; axis < 3; ++axis) {
         const AxisPlanes& own = planes[std::size_t(axis)];
         if (!(extent[axis] > 1e-9 * largest)) continue;
@@ -225,6 +239,7 @@ Meshes meshesOf(const std::vector<OpenedFile>& files) {
                 ++meshes.blocksOfFirst;
             }
             meshes.cellData = meshes.cellData && block.cellData;
+            meshes.cellArrays = meshes.cellArrays || (block.mesh && block.cellArrays);
             meshes.blocks.push_back(&block);
             const auto [known, isNew] = boxes.emplace(
                 file.entry.group + "\n" + std::to_string(&block - file.blocks.data()) + block.name, extent);
@@ -240,10 +255,11 @@ Meshes meshesOf(const std::vector<OpenedFile>& files) {
 ChosenGrid chooseGrid(const std::vector<OpenedFile>& files, const ImportOptions& options, Box& bounds,
                       std::vector<std::string>& notes) {
     const FileBlock& first = files.front().blocks.front();
-    bool equalGrids = true, anyMesh = false;
+    bool equalGrids = true, anyMesh = false, anyUneven = false;
     for (const OpenedFile& file : files)
         for (const FileBlock& block : file.blocks) {
             anyMesh = anyMesh || block.mesh;
+            anyUneven = anyUneven || !block.lattice.isEven();
             equalGrids = equalGrids && !block.mesh && !first.mesh && sameLattice(first.lattice, block.lattice);
         }
     const bool wantsEven = options.grid == GridChoice::Even || options.gridSize != glm::ivec3(0);
@@ -256,7 +272,8 @@ ChosenGrid chooseGrid(const std::vector<OpenedFile>& files, const ImportOptions&
     checkGrids(files);
     const Meshes meshes = meshesOf(files);
     ChosenGrid chosen;
-    if (wantsEven || meshes.moves) // what moves has other planes at each time
+    // What moves has other planes at each time; grids alone that differ are resampled evenly.
+    if (wantsEven || meshes.moves || !(anyMesh || anyUneven))
         chosen.lattice = evenGridForMesh(meshes, options.gridSize);
     else
         chosen = planeGridForMesh(meshes, notes);
@@ -269,6 +286,7 @@ ChosenGrid chooseGrid(const std::vector<OpenedFile>& files, const ImportOptions&
     std::string note = anyMesh      ? "mesh of " + std::to_string(cells) + " cells"
                        : equalGrids ? "a grid with uneven spacing"
                                     : "several different grids";
+    if (meshes.moves && !wantsEven) notes.emplace_back("a mesh that moves: at even distances, as many as cells");
     if (meshes.blocksOfFirst > 1) note += " in " + std::to_string(int(meshes.blocksOfFirst)) + " blocks";
     note += ", sampled on " + words(grid.size);
     if (chosen.onePerCell) note += ", one sample for each cell";

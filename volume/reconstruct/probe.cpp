@@ -89,10 +89,13 @@ private:
         const LevelGeometry geometry = levelGeometry(source_.grid(), 0);
         const Lattice& lattice = source_.grid().lattice;
         const glm::dvec3 cells = lattice.between(position);
-        if (!labels_) return tetrahedral(geometry, samples_, cells).value();
+        const auto valueOf = [&](const Blend& blend) {
+            return lattice.isEven() ? blend.value() : blend.valueInCellOf(samples_(near));
+        };
+        if (!labels_) return valueOf(tetrahedral(geometry, samples_, cells));
         const auto partOf = [this](glm::ivec3 place) { return partAt(place); };
         const OwnPart own(lattice, samples_, partOf, near);
-        std::optional<double> value = tetrahedral(geometry, own, cells).value();
+        std::optional<double> value = valueOf(tetrahedral(geometry, own, cells));
         if (value && !parameter().ranges.empty()) {
             const Range range = source_.info().channelRange(channel_);
             value = std::clamp(*value, range.lo, std::max(range.lo, range.hi));

@@ -135,6 +135,13 @@ struct Blend {
         if (coverage < kPresentCoverage) return std::nullopt;
         return sum / coverage;
     }
+    /// In the cell of `own`, whose borders need not lie half-way between samples: wherever that is present, by those
+    /// that are. For axes with uneven spacing.
+    std::optional<double> valueInCellOf(const Sample& own) const {
+        constexpr double kSome = 1e-6;
+        if (!own.present) return std::nullopt;
+        return coverage > kSome ? sum / coverage : own.value;
+    }
 };
 
 /// Adds `weight` times the trilinear interpolation within one sublattice at a continuous index of it.

@@ -17,7 +17,7 @@
 ///
 ///     region   1 .. 7, a label
 ///     T        kAirSide + sum over layers of heatFlux * thickness / conductivity up to z: k dT/dz is heatFlux
-///     everywhere O2       in the first three layers: kOxygen (1 - kOxygenUsed x / kLengthX), less the drop by the flux
+///     O2       in the first three layers: kOxygen (1 - kOxygenUsed x / kLengthX), less the drop by the flux
 ///              current / 4F: (flux / diffusivity) per length in the diffusion and the catalyst layer
 ///     H2       in the last three layers: kHydrogen (1 - kHydrogenUsed (kLengthX - x) / kLengthX), less the drop by the
 ///              flux current / 2F from the fuel channel down to the membrane

@@ -39,6 +39,7 @@ struct FileBlock {
     bool resamples = false;           ///< `read` can sample on any grid; a grid only on its own otherwise
     bool mesh = false;                ///< cells that are sampled; else samples lie on `lattice` as they are
     bool cellData = false;            ///< values belong to cells, so samples lie in the middle of cells, within `box`
+    bool cellArrays = false;          ///< some array of a mesh is of cells, beside those of points or not
     Lattice lattice;                  ///< of a grid; of an uneven one with its axes
     Box box;                          ///< extent of a mesh, or of the cells of a grid
     double cells = 0;                 ///< of a mesh, or an uneven grid

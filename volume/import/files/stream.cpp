@@ -142,6 +142,7 @@ void parseCells(FileBlock& block, const HeaderReader& reader) {
         if (block.box.lo[axis] > block.box.hi[axis] || block.cellSize[axis] < 0) reader.fail("box");
     if (!(block.cells >= 1)) reader.fail("cells");
     if (reader.object.contains("volume")) block.volume = reader.numbers("volume", 1, 1)[0];
+    block.cellArrays = reader.object.contains("cellArrays") && reader.flag("cellArrays");
     block.boxes = reader.object.contains("boxes") && reader.flag("boxes");
     const auto events = reader.object.find("events");
     if (events == reader.object.end()) return;
@@ -167,7 +168,13 @@ void parseGrid(FileBlock& block, const HeaderReader& reader) {
     block.lattice = withStatedAxes(block.lattice, true, axes->dump(-1, ' ', false, json::error_handler_t::replace),
                                    reader.file, reader.place + "axes");
     block.cellData = hasCells(block.lattice.axes);
+    const Box stated = block.box;
     block.box = gridBounds(block.lattice);
+    for (int axis = 0; axis < 3 && reader.object.contains("box"); ++axis) // of axes without a map it may be flat
+        if (block.lattice.axes[axis] == nullptr && stated.lo[axis] <= stated.hi[axis]) {
+            block.box.lo[axis] = stated.lo[axis];
+            block.box.hi[axis] = stated.hi[axis];
+        }
     if (reader.object.contains("cells")) parseCells(block, reader);
 }
 
@@ -189,7 +196,7 @@ FileBlock parseBlock(const json& entry, const std::string& file, const std::stri
     }
     block.mesh = reader.flag("mesh");
     block.cellData = (block.mesh || entry.contains("cellData")) && reader.flag("cellData");
-    if (block.mesh || block.cellData) {
+    if (block.mesh || block.cellData || (entry.contains("axes") && entry.contains("box"))) {
         const std::vector<double> box = reader.numbers("box", 6, 6);
         block.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
     }

@@ -23,12 +23,13 @@
 /// have the layout of the one before it; N files after `--slices` are slices of one volume and count as one. With
 /// `--allow-outside` files may name others outside of their folders. Keys:
 /// "format", "blocks": [{"name", "mesh", "cellData", "dims", "spacing", "origin", "box" (6 numbers, x first), "cells",
-/// "cellSize", "volume", "boxes", "axes", "events", "lengthUnit", "timeName", "timeUnit", "notes", "times",
-/// "quantities":
+/// "cellSize", "volume", "boxes", "cellArrays", "axes", "events", "lengthUnit", "timeName", "timeUnit", "notes",
+/// "times", "quantities":
 /// [{"name", "unit", "values": [a number or null for each time]}], "arrays": [{"name", "unit", "components", "type",
 /// "labels": {"1": "air"}}]}]. "timeName", "notes" and "quantities" are optional. A grid of uneven axes has "axes"
 /// (volume/field/axes_json.h), whose sheet "spacing" and "origin" are of, and the "cells" and "cellSize" of a mesh.
-/// "volume", "boxes" and "events" are of a mesh, the last for each axis the numbers of AxisEvent, seven each.
+/// "volume", "boxes", "cellArrays" and "events" are of a mesh, the last for each axis the numbers of AxisEvent, seven
+/// each.
 ///
 /// kind 2, frame: u32 type (ScalarType), u32 mask (0 or 1), i32 nx, ny, nz, then nx*ny*nz samples, x fastest, then, if
 /// mask is 1, as many bytes (1 present, 0 absent). It answers the line
