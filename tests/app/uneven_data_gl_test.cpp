@@ -10,7 +10,7 @@
 namespace tessera::app {
 namespace {
 
-class UnevenData : public WorkbenchTest {
+class UnevenData : public DrawnWorkbench {
 protected:
     Opened membrane() {
         DataRef data;
