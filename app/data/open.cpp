@@ -177,7 +177,9 @@ void moveTo(Session& session, History& history, const volume::DatasetInfo* from,
                 if (auto* const volume = std::get_if<VolumeView>(&view); volume && volume->time) move(*volume->time);
         }
     session.data = data;
-    history.setData(data);
+    // Drawn as stored, by cells: so brushes select, too.
+    if (data.lattice == PictureLattice::Even && !to.lattice.isEven()) session.data.lattice = PictureLattice::Grid;
+    history.setData(session.data);
     fitSession(session, to, messages);
 }
 
@@ -238,8 +240,17 @@ DataRef dataRequested(const OpenRequest& request, const SessionDocument* layout,
     return data;
 }
 
-/// Shows data in a layout, without one in the default session. `latticeChosen`: the lattice of pictures was.
-Opened openData(DataRef data, std::optional<SessionDocument> layout, bool latticeChosen, const Progress& progress) {
+/// The lattice that pictures of data are drawn on first, which were opened for that of `data`.
+PictureLattice latticeOfFirst(const DataRef& data, const Sources& sources, const OpenRequest& request) {
+    const volume::DatasetInfo& numbers = sources.numbers->info();
+    if (numbers.lattice.isEven()) return latticeFor(data.lattice, numbers);
+    if (!canChooseLattice(data, *sources.numbers, sources.origin)) return PictureLattice::Grid;
+    return request.uneven ? latticeFor(*request.uneven, numbers) : firstLattice(data.lattice, numbers);
+}
+
+/// Shows data in a layout, without one in the default session.
+Opened openData(DataRef data, std::optional<SessionDocument> layout, const OpenRequest& request,
+                const Progress& progress) {
     Opened opened;
     const bool errors = layout && packsForErrors(layout->session, data) && !sameData(layout->session.data, data);
     if (errors) {
@@ -249,10 +260,14 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, bool lattic
         data.derived = layout->session.data.derived;
     }
     Sources sources = openSources(data, opened.messages, progress);
-    const PictureLattice lattice = firstLattice(data.lattice, sources.numbers->info());
-    if (!latticeChosen && lattice != data.lattice) {
+    if (const PictureLattice lattice = latticeOfFirst(data, sources, request); lattice != data.lattice) {
         data.lattice = lattice;
-        sources = drawnOn(lattice, sources);
+        if (data.other) { // whose numbers depend on the lattice of pictures
+            opened.messages.clear();
+            sources = openSources(data, opened.messages);
+        } else if (!sources.numbers->info().lattice.isEven()) {
+            sources = drawnOn(lattice, sources);
+        }
     }
     if (errors)
         showErrors(*layout, data, sources, opened.messages);
@@ -296,7 +311,7 @@ Opened open(const OpenRequest& request, const Progress& progress) {
     std::vector<std::string> said;
     DataRef data = dataRequested(request, layout ? &*layout : nullptr, folder, said, progress);
     if (request.remote) data.remote = *request.remote;
-    Opened opened = openData(std::move(data), std::move(layout), request.lattice.has_value(), progress);
+    Opened opened = openData(std::move(data), std::move(layout), request, progress);
     opened.messages.insert(opened.messages.begin(), said.begin(), said.end());
     return opened;
 }

@@ -19,6 +19,7 @@ struct OpenRequest {
     std::optional<DataRef> data;                     ///< instead of paths, or instead of the data of a session
     std::optional<volume::ImportOptions> import;     ///< for data files
     std::optional<PictureLattice> lattice = {};      ///< of pictures of data that are opened anew
+    std::optional<PictureLattice> uneven = {};       ///< the same where their axes are uneven
     std::optional<codec::RemoteOptions> remote = {}; ///< for archives on other machines
 };
 

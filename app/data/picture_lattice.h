@@ -8,7 +8,8 @@
 namespace tessera::app {
 
 /// Samples as pictures draw them; as they are where they lie on no regular grid, or on another machine, from which the
-/// bricks around those that are seen would have to come, too. `former`: pictures of the same data before a change.
+/// bricks around those that are seen would have to come, too. `lattice` as latticeFor() has it. `former`: pictures of
+/// the same data before a change.
 std::shared_ptr<const volume::BrickSource> drawnOn(const std::shared_ptr<const volume::BrickSource>& numbers,
                                                    PictureLattice lattice, const volume::BrickSource* former = nullptr);
 

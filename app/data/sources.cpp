@@ -277,7 +277,7 @@ Sources openOther(const DataRef& data, Sources& whole, std::vector<std::string>&
     if (const auto unpacked = unpackedOnto(*whole.numbers, wanted)) {
         other.numbers = unpacked;
         other.origin.unpacked = true;
-    } else if (data.lattice == PictureLattice::Grid) {
+    } else if (latticeFor(data.lattice, whole.numbers->info()) == PictureLattice::Grid) {
         if (const auto own = unpackedOnto(*other.numbers, data)) {
             whole.numbers = whole.pictures = own;
             whole.origin.unpacked = true;

@@ -23,7 +23,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLatticeChoice = "lattice"; ///< key of the remembered choice
+/// Keys of remembered choices; that for uneven axes means something else.
+constexpr const char *kLatticeChoice = "lattice", *kUnevenChoice = "unevenLattice";
+
+std::optional<PictureLattice> rememberedLattice(const std::string& stateFolder, const char* key) {
+    const std::string chosen = rememberedChoice(stateFolder, key);
+    for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred, PictureLattice::Even})
+        if (chosen == kPictureLatticeNames[std::size_t(lattice)]) return lattice;
+    return std::nullopt;
+}
 
 } // namespace
 
@@ -38,12 +46,11 @@ bool showsDataFiles(const Document& document) {
 }
 
 OpenRequest DataFollower::withChoices(OpenRequest request) const {
-    const std::string chosen = rememberedChoice(options_.stateFolder, kLatticeChoice);
-    for (const auto lattice : {PictureLattice::Grid, PictureLattice::BodyCentred, PictureLattice::Even})
-        if (chosen == kPictureLatticeNames[std::size_t(lattice)]) {
-            request.lattice = lattice;
-            if (request.data && request.paths.empty() && request.data->files.empty()) request.data->lattice = lattice;
-        }
+    request.uneven = rememberedLattice(options_.stateFolder, kUnevenChoice);
+    const auto lattice = rememberedLattice(options_.stateFolder, kLatticeChoice);
+    if (!lattice || *lattice == PictureLattice::Even) return request;
+    request.lattice = lattice;
+    if (request.data && request.paths.empty() && request.data->files.empty()) request.data->lattice = *lattice;
     return request;
 }
 
@@ -167,11 +174,15 @@ void DataFollower::followLattice() {
     const auto step = lattice_.next(wanted);
     if (step == Tracked<PictureLattice>::Step::Cancel) jobs_.cancel("lattice");
     if (step != Tracked<PictureLattice>::Step::Make) return;
-    rememberChoice(options_.stateFolder, kLatticeChoice, std::string(kPictureLatticeNames[std::size_t(wanted)]));
-    if (!canChooseLattice(data, *document_.sources().numbers, document_.sources().origin)) {
+    const volume::BrickSource& numbers = *document_.sources().numbers;
+    if (!canChooseLattice(data, numbers, document_.sources().origin)) {
         lattice_.shown = wanted;
         return;
     }
+    const bool even = numbers.info().lattice.isEven();
+    if (!even || wanted != PictureLattice::Even)
+        rememberChoice(options_.stateFolder, even ? kLatticeChoice : kUnevenChoice,
+                       std::string(kPictureLatticeNames[std::size_t(wanted)]));
     jobs_.start("lattice", "Resampling for pictures",
                 [this, wanted, from = document_.sources()](const Progress&) -> Jobs::Finish {
                     const Sources made = drawnOn(wanted, from);

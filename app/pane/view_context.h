@@ -116,6 +116,13 @@ struct ViewContext {
     bool takesInput() const { return !figure; }
 };
 
+/// Where numbers are to be read as they are drawn: those of the pictures where these have other axes, as pictures to
+/// scale of uneven samples do, else those of the numbers.
+inline const std::shared_ptr<const volume::BrickSource>& drawnSource(const ViewContext& context) {
+    const bool alike = context.source->info().lattice.axes == context.numbers->info().lattice.axes;
+    return alike ? context.numbers : context.source;
+}
+
 /// The cache of a pane, made on first use.
 template <class Cache> Cache& cacheOf(ViewContext& context, const std::string& pane) {
     std::unique_ptr<ViewCache>& slot = context.caches[pane];

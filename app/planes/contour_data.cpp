@@ -44,7 +44,7 @@ ContourNodes nodesOf(const volume::DatasetInfo& info, const ContourQuery& query)
     ContourNodes nodes;
     nodes.size = {nodesAlong(info, plane.right, span.x, finer), nodesAlong(info, plane.up, span.y, finer)};
     nodes.step = span / glm::dvec2(nodes.size - 1);
-    const volume::AxisMaps& maps = info.lattice.axes;
+    const volume::AxisMaps& maps = query.maps; // pictures may be to scale where the samples are not even
     const double slack = 1e-9 * glm::length(info.bounds.size());
     const double near = 1.5 * glm::length(nodes.step);
     bool beside = false;

@@ -38,6 +38,7 @@ struct ContourQuery {
     Range x, y; ///< what the picture spans along the plane's directions
     volume::TimePair time;
     std::vector<double> levels;
+    volume::AxisMaps maps = {}; ///< from the sheet that the plane is of to space: those of the picture
     bool operator==(const ContourQuery&) const = default;
 };
 

@@ -21,7 +21,7 @@ VectorPage planesPage(const volume::BrickSource& source, const std::vector<Plane
 Table planesTable(const volume::BrickSource& source, const std::vector<PlanePicture>& pictures,
                   const std::vector<int>& channels, const Progress& progress = {});
 
-/// The tool that exports both, of the numbers of a view.
+/// The tool that exports both, of the numbers of a view, on planes as they are drawn (drawnSource()).
 void exportPlanes(ViewContext& context, ToolRow& tools, const std::string& name, std::vector<PlanePicture> pictures,
                   int columns, std::vector<int> channels);
 

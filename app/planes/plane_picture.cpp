@@ -150,7 +150,8 @@ std::string unevenText(const PlanePicture& picture) {
 }
 
 ContourQuery contourQuery(const PlanePicture& picture) {
-    return {picture.lined.value_or(0), picture.plane, picture.x, picture.y, picture.time, picture.levels.values};
+    return {picture.lined.value_or(0), picture.plane, picture.x, picture.y, picture.time,
+            picture.levels.values,     picture.maps};
 }
 
 std::string contourNote(const volume::DatasetInfo& info, const PlanePicture& picture) {

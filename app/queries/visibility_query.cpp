@@ -16,7 +16,8 @@ constexpr double kAspect = 1.5;      ///< of the assumed picture; several views 
 std::shared_ptr<const std::vector<double>> AsyncVisibility::get(ViewContext& context, const std::string& jobKey,
                                                                 int channel, Range range, int bins) {
     const Session& session = context.session;
-    const volume::DatasetInfo& info = context.numbers->info();
+    const auto& drawn = drawnSource(context); // on its sheet, so as thick as pictures have it
+    const volume::DatasetInfo& info = drawn->info();
     const std::string name = info.channel(channel).name;
     const vis::VolumeLayer* layer = nullptr;
     for (const vis::Layer& entry : session.layers)
@@ -26,8 +27,8 @@ std::shared_ptr<const std::vector<double>> AsyncVisibility::get(ViewContext& con
     if (!layer || !(range.hi > range.lo)) return nullptr;
     using Source = std::shared_ptr<const volume::BrickSource>;
     const auto grid = grids_.answer(
-        context, context.numbers, {.key = jobKey + ":samples", .title = "Samples for visibility", .quiet = true},
-        {channel, context.numbers->grid().levelWithin(kMostSamples), volume::timesAround(info.times, session.time)},
+        context, drawn, {.key = jobKey + ":samples", .title = "Samples for visibility", .quiet = true},
+        {channel, drawn->grid().levelWithin(kMostSamples), volume::timesAround(info.times, session.time)},
         [](const Source& source, const GridQuery& asked, int, const Progress& progress) {
             const volume::SourceAtTime shown = volume::sourceAt(source, asked.time);
             return volume::readSamples(*volume::sheetSource(shown.source), asked.channel, shown.time, asked.level,
@@ -44,7 +45,7 @@ std::shared_ptr<const std::vector<double>> AsyncVisibility::get(ViewContext& con
     query.density = double(layer->density);
     query.bins = bins;
     return histograms_.get(
-        context, context.numbers, {.key = jobKey, .title = "Visibility", .quiet = true}, {grid->query, query},
+        context, drawn, {.key = jobKey, .title = "Visibility", .quiet = true}, {grid->query, query},
         [grid](const Source& source, const Query& asked, int, const Progress& progress) {
             return vis::visibilityHistogram(grid->result, source->info().bounds, asked.query, progress);
         },

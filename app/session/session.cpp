@@ -79,19 +79,33 @@ vis::Scene sceneOf(const Session& session) {
 
 bool drawsToScale(PictureLattice lattice, const volume::DatasetInfo& info) {
     return lattice == PictureLattice::Even && !info.lattice.isEven() && info.lattice.kind == volume::LatticeKind::CC &&
-           !info.remote;
+           !info.remote && double(info.lattice.count()) <= kMostToScale;
 }
+
+PictureLattice latticeFor(PictureLattice chosen, const volume::DatasetInfo& info) {
+    if (chosen != PictureLattice::Even || drawsToScale(chosen, info)) return chosen;
+    return info.lattice.isEven() ? DataRef{}.lattice : PictureLattice::Grid;
+}
+
+namespace {
+
+/// Beside the originals all is drawn as it is stored.
+bool toScale(const DataRef& data, const volume::DatasetInfo& info) {
+    return drawsToScale(data.lattice, info) && !(data.packed && data.originals);
+}
+
+} // namespace
 
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info) {
     vis::WorldFrame frame = vis::worldFrame(info, session.stretch);
-    if (drawsToScale(session.data.lattice, info)) frame.axes = {};
+    if (toScale(session.data, info)) frame.axes = {};
     return {vis::placeLenses(session.lenses, frame, session.camera, session.cursor), frame};
 }
 
 vis::LensSpace brushSpace(const Session& session, const volume::DatasetInfo& info) {
     if (vis::selectsLens(session.selection)) return lensSpace(session, info);
     vis::LensSpace space;
-    if (!drawsToScale(session.data.lattice, info)) space.frame.axes = info.lattice.axes;
+    if (!toScale(session.data, info)) space.frame.axes = info.lattice.axes;
     return space;
 }
 

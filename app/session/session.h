@@ -224,9 +224,14 @@ std::string firstChannel(const volume::DatasetInfo& info);
 /// The name of a layer: the user's, else what it shows, "T surface", "T volume", "T slice z", "U flow".
 std::string layerName(const vis::Layer& layer);
 
-/// Whether pictures of data with uneven axes are to scale: resampled to an even grid, which BCC data and those on
-/// another machine are not.
+/// Samples that data with uneven axes may have so that pictures of them are to scale.
+inline constexpr double kMostToScale = 16e6;
+/// Whether pictures of data with uneven axes are to scale: resampled to an even grid, which BCC data, those on another
+/// machine and those of more than kMostToScale samples are not. `info`: of the numbers.
 bool drawsToScale(PictureLattice lattice, const volume::DatasetInfo& info);
+/// What a choice means for data that have these numbers: `Even` is for uneven axes alone, others are drawn as usual;
+/// those that cannot be drawn to scale are drawn by cells.
+PictureLattice latticeFor(PictureLattice chosen, const volume::DatasetInfo& info);
 
 /// The session's lenses in the space of its data.
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info);

@@ -173,7 +173,13 @@ std::vector<Command> latticeCommands(Workbench& workbench) {
                      return canChooseLattice(document.session().data, numbers, document.sources().origin) &&
                             (lattice != PictureLattice::Even || drawsToScale(lattice, numbers.info()));
                  },
-             .checked = [&workbench, lattice] { return workbench.session().data.lattice == lattice; }});
+             .checked =
+                 [&workbench, lattice] {
+                     const Document& document = workbench.document();
+                     const PictureLattice chosen = document.session().data.lattice;
+                     return lattice ==
+                            (document.loaded() ? latticeFor(chosen, document.sources().numbers->info()) : chosen);
+                 }});
     struct Grids {
         ShownGrids grids;
         const char* name;

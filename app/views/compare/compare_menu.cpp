@@ -55,7 +55,8 @@ void drawOffers(CompareView& view, std::vector<CompareVariant>& variants, const 
 }
 
 void drawAddMenu(const ViewContext& context, CompareView& view, std::vector<CompareVariant>& variants) {
-    const std::vector<CompareOffers> groups = compareOffers(context.session, context.source->info());
+    const std::vector<CompareOffers> groups =
+        compareOffers(context.session, context.source->info(), &context.numbers->info());
     for (const CompareOffers& group : groups)
         if (!group.technique) drawOffers(view, variants, group);
     if (ImGui::MenuItem("The session as it is")) add(view, variants, {});

@@ -148,7 +148,8 @@ CompareOffers technique(CompareOffers group) {
 
 } // namespace
 
-std::vector<CompareOffers> compareOffers(const Session& session, const volume::DatasetInfo& info) {
+std::vector<CompareOffers> compareOffers(const Session& session, const volume::DatasetInfo& info,
+                                         const volume::DatasetInfo* numbers) {
     std::vector<CompareOffers> groups{otherFile(session, info), otherTimes(session, info),
                                       otherParameters(session, info), otherStyles(session), compressions(session)};
     groups.push_back(
@@ -163,15 +164,17 @@ std::vector<CompareOffers> compareOffers(const Session& session, const volume::D
         technique(oneByOne("Another proxy geometry", "Every proxy geometry",
                            ofNames("/render/proxy", vis::kProxyNames, std::size_t(session.render.proxy)))));
     const DataRef& data = session.data;
-    const bool grid = data.lattice == PictureLattice::Grid;
+    const volume::DatasetInfo& samples = numbers ? *numbers : info;
+    const PictureLattice lattice = latticeFor(data.lattice, samples);
+    const bool grid = lattice == PictureLattice::Grid;
     const auto offer = [&](const char* name, PictureLattice other) {
         groups.push_back(technique(
             oneByOne("The other lattice", name,
                      {changed(name, "/data/lattice", std::string(kPictureLatticeNames[std::size_t(other)]))})));
     };
-    if (data.lattice == PictureLattice::Even)
+    if (lattice == PictureLattice::Even)
         offer("By cells", PictureLattice::Grid);
-    else if (grid && !info.lattice.isEven())
+    else if (grid && drawsToScale(PictureLattice::Even, samples))
         offer("To scale", PictureLattice::Even);
     else if (!grid || info.lattice.kind == volume::LatticeKind::CC)
         offer(grid ? "BCC" : "CC", grid ? PictureLattice::BodyCentred : PictureLattice::Grid);

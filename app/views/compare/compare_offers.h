@@ -24,8 +24,10 @@ struct CompareOffers {
 };
 
 /// What differs from what the session shows, the plainest first: the other file, other times, parameters of the first
-/// layer, styles, looks and compressions; then techniques. Groups with nothing to offer are left out.
-std::vector<CompareOffers> compareOffers(const Session& session, const volume::DatasetInfo& info);
+/// layer, styles, looks and compressions; then techniques. Groups with nothing to offer are left out. `info`: of the
+/// pictures; `numbers`: of the numbers, nothing where both are the same.
+std::vector<CompareOffers> compareOffers(const Session& session, const volume::DatasetInfo& info,
+                                         const volume::DatasetInfo* numbers = nullptr);
 
 /// The variants of a view: its own, or where it has none the session as it is and the first other one that
 /// compareOffers has, so that there is something to see.

@@ -44,11 +44,22 @@ struct Frame {
     std::size_t reference = 0, other = 0;
 };
 
-/// What is drawn over a picture: caption, and if the picture is there cursor and brushes.
-void drawOver(const Frame& frame, const PictureBox& box, const Session& session, const std::string& caption,
-              bool marked, bool there, bool left = true) {
+std::string nameOf(const Frame& frame, std::size_t index) {
+    return variantName(frame.context.session, frame.variants[index]);
+}
+
+/// Of the data as a variant is drawn, which may have axes of its own; those of the session until they are open.
+const volume::DatasetInfo& infoOf(const Frame& frame, std::size_t index) {
+    const auto& cells = frame.cache.pictures.cells();
+    const auto source = index < cells.size() && cells[index] ? cells[index]->source(frame.context) : nullptr;
+    return (source ? source : frame.context.source)->info();
+}
+
+/// What is drawn over the picture of a variant: caption, and if the picture is there cursor and brushes.
+void drawOver(const Frame& frame, const PictureBox& box, std::size_t index, bool there, bool left = true) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const volume::DatasetInfo& info = frame.context.source->info();
+    const Session& session = frame.context.session;
+    const volume::DatasetInfo& info = infoOf(frame, index);
     const SpaceFrame space = spaceFrame(box.min, box.max(), session.camera, info, session.stretch);
     const Decoration& shown = frame.context.decoration;
     if (there && shown.cursor) drawCursor3d(draw, space, session.cursor);
@@ -57,11 +68,12 @@ void drawOver(const Frame& frame, const PictureBox& box, const Session& session,
     const PlotColors colors = plotColors();
     const float pad = em() * 0.5f;
     addFittedWithBackdrop(draw, {left ? box.min.x + pad : box.max().x - pad, box.min.y + em() * 0.4f},
-                          {left ? 0.0f : 1.0f, 0}, colors.text, caption, box.size.x * (left ? 1.0f : 0.5f) - 2 * pad);
+                          {left ? 0.0f : 1.0f, 0}, colors.text, nameOf(frame, index),
+                          box.size.x * (left ? 1.0f : 0.5f) - 2 * pad);
     if (const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes); !uneven.empty() && left)
         addTextWithBackdrop(draw, {box.min.x + pad, box.max().y - pad}, {0, 1}, colors.faint, uneven.c_str());
     // In a low picture it would cover what is compared; the table says it as well.
-    if (marked && box.size.y > em() * 7)
+    if (left && index == frame.reference && box.size.y > em() * 7)
         addTextWithBackdrop(draw, {box.min.x + pad, box.min.y + em() * 1.7f}, {0, 0}, colors.faint, "reference");
 }
 
@@ -73,7 +85,7 @@ bool picture(const Frame& frame, std::size_t index, const PictureBox& box, bool 
     mouseArea("picture", box.size,
               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                   ImGuiButtonFlags_MouseButtonRight);
-    const vis::WorldFrame world = vis::worldFrame(frame.context.source->info(), frame.context.session.stretch);
+    const vis::WorldFrame world = vis::worldFrame(infoOf(frame, index), frame.context.session.stretch);
     CameraController& hand = cache.hands[index];
     hand.blocked = blocked;
     vis::ViewTarget* target = nullptr;
@@ -104,10 +116,6 @@ bool isDrawn(const Frame& frame, std::size_t index) {
     return frame.cache.pictures.cells()[index]->drawn;
 }
 
-std::string nameOf(const Frame& frame, std::size_t index) {
-    return variantName(frame.context.session, frame.variants[index]);
-}
-
 void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool differences) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (differences)
@@ -122,7 +130,7 @@ void drawGrid(const Frame& frame, const std::vector<PictureBox>& boxes, bool dif
             draw.AddImage(textureId(cell.differencePicture.name()), box.min, box.max());
         else
             drawCell(frame, i, box);
-        drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference, shown || cell.drawn);
+        drawOver(frame, box, i, shown || cell.drawn);
         draw.PopClipRect();
     }
 }
@@ -159,7 +167,7 @@ void drawValues(const Frame& frame, const std::string& pane, const std::vector<P
             addPicture(draw, cell.values.texture(), box.min, box.max());
         else
             drawCell(frame, i, box);
-        drawOver(frame, box, frame.context.session, nameOf(frame, i), i == frame.reference, shown || cell.drawn);
+        drawOver(frame, box, i, shown || cell.drawn);
         if (shown && frame.context.decoration.title)
             for (int line = 0; const std::string& text : valuesText(cell)) note(text, line++);
         else if (!shown && i != frame.reference && cell.failure.empty())
@@ -229,11 +237,11 @@ void drawSwipe(const Frame& frame, const PictureBox& box) {
     const float x = std::round(box.min.x + box.size.x * frame.view.swipe);
     draw.PushClipRect(box.min, {x, box.max().y}, true);
     drawCell(frame, frame.reference, box);
-    drawOver(frame, box, frame.context.session, nameOf(frame, frame.reference), true, isDrawn(frame, frame.reference));
+    drawOver(frame, box, frame.reference, isDrawn(frame, frame.reference));
     draw.PopClipRect();
     draw.PushClipRect({x, box.min.y}, box.max(), true);
     drawCell(frame, frame.other, box);
-    drawOver(frame, box, frame.context.session, nameOf(frame, frame.other), false, isDrawn(frame, frame.other), false);
+    drawOver(frame, box, frame.other, isDrawn(frame, frame.other), false);
     draw.PopClipRect();
     const PlotColors colors = plotColors();
     draw.AddLine({x, box.min.y}, {x, box.max().y}, colors.backdrop, 4);
@@ -264,7 +272,7 @@ std::size_t turn(const Frame& frame) {
 void drawBlink(const Frame& frame, const PictureBox& box) {
     const std::size_t shown = turn(frame);
     drawCell(frame, shown, box);
-    drawOver(frame, box, frame.context.session, nameOf(frame, shown), shown == frame.reference, isDrawn(frame, shown));
+    drawOver(frame, box, shown, isDrawn(frame, shown));
 }
 
 /// The 3D scene of every variant, in `boxes` or, in turn or beside a line, in the only one.

@@ -61,7 +61,7 @@ void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
         const volume::SourceAtTime shown =
             volume::sourceAt(cache.bricks, volume::timesAround(frame.info.times, context.session.time));
         const auto value = readWall(*shown.source, context.session, *channel, wall, kCubeFaces[hit.face],
-                                    frame.physical(hit), shown.time);
+                                    frame.physical(hit), shown.time, &drawnSource(context)->info().lattice);
         const volume::Channel known = frame.info.channel(*channel);
         const bool share = wall.kind == WallKind::XRay || wall.kind == WallKind::Shadow;
         const Range range = frame.info.channelRange(known);

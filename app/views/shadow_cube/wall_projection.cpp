@@ -15,24 +15,24 @@ constexpr int kMostPlaces = 4096;
 constexpr double kThinnest = 1e-3; ///< half edge of data without extent, for a camera
 
 /// Middles of even parts of the line through the data behind a place as it is drawn, two to a cell of the lattice.
-std::vector<glm::dvec3> placesBehind(const volume::DatasetInfo& info, const CubeFace& face, glm::dvec3 position) {
-    const double length = info.bounds.size()[face.axis];
-    const double spacing = std::abs(info.lattice.spacing[face.axis]);
+std::vector<glm::dvec3> placesBehind(const volume::Box& bounds, const volume::Lattice& drawn, const CubeFace& face,
+                                     glm::dvec3 position) {
+    const double length = bounds.size()[face.axis];
+    const double spacing = std::abs(drawn.spacing[face.axis]);
     const double cells = spacing > 0 ? length / spacing : 0;
     const int count = std::clamp(2 * int(std::lround(cells)), 1, kMostPlaces);
     std::vector<glm::dvec3> places;
     for (int i = 0; i < count; ++i) {
         places.push_back(position);
-        places.back()[face.axis] =
-            info.lattice.axes.toSpace(face.axis, info.bounds.lo[face.axis] + length * (i + 0.5) / count);
+        places.back()[face.axis] = drawn.axes.toSpace(face.axis, bounds.lo[face.axis] + length * (i + 0.5) / count);
     }
     return places;
 }
 
-double greatestInterest(const volume::BrickSource& source, const Session& session,
+double greatestInterest(const volume::BrickSource& source, const Session& session, const volume::AxisMaps& axes,
                         const std::vector<glm::dvec3>& places, int time) {
     vis::LensSpace space; // walls have no lenses
-    space.frame.axes = source.info().lattice.axes;
+    space.frame.axes = axes;
     const vis::DoiFunction interest(session.selection, space);
     std::vector<std::vector<volume::ProbeValue>> columns;
     for (const std::string& name : interest.channels()) {
@@ -147,15 +147,16 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, const 
 }
 
 std::optional<double> readWall(const volume::BrickSource& source, const Session& session, int channel, const Wall& wall,
-                               const CubeFace& face, glm::dvec3 position, int time) {
+                               const CubeFace& face, glm::dvec3 position, int time, const volume::Lattice* drawn) {
     const WallKind kind = wall.kind;
     const volume::DatasetInfo& info = source.info();
+    const volume::Lattice& lattice = drawn ? *drawn : info.lattice;
     if (kind == WallKind::Slice) {
         position[face.axis] = session.cursor[face.axis];
         return volume::probeChannel(source, channel, position, time).interpolated;
     }
-    const std::vector<glm::dvec3> places = placesBehind(info, face, position);
-    if (kind == WallKind::Shadow) return greatestInterest(source, session, places, time);
+    const std::vector<glm::dvec3> places = placesBehind(info.bounds, lattice, face, position);
+    if (kind == WallKind::Shadow) return greatestInterest(source, session, lattice.axes, places, time);
     const volume::Channel known = info.channel(channel);
     const vis::Scene scene = sceneOf(session);
     const vis::TransferFunction& function = vis::transferFor(scene, wall.transfer.empty() ? known.name : wall.transfer);

@@ -48,9 +48,11 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, const 
 
 /// The value that a face shows at a physical position: the value at the cursor's plane, the mean or maximum along the
 /// box, the absorbed share (0..1) by the transfer function, or the greatest degree of interest. Means are integrals of
-/// the linear interpolation: on CC the trapezoidal sum over the grid. Nothing if all samples are absent. Throws Error.
+/// the linear interpolation: on CC the trapezoidal sum over the grid. Nothing if all samples are absent. `drawn`: the
+/// lattice of the pictures where its axes are not those of the source. Throws Error.
 std::optional<double> readWall(const volume::BrickSource& source, const Session& session, int channel, const Wall& wall,
-                               const CubeFace& face, glm::dvec3 position, int time);
+                               const CubeFace& face, glm::dvec3 position, int time,
+                               const volume::Lattice* drawn = nullptr);
 
 /// The box through the data behind a rectangle of a face, given by two physical positions.
 vis::BoxRegion prism(const CubeFace& face, glm::dvec3 from, glm::dvec3 to, const volume::Box& bounds);

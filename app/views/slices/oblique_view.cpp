@@ -60,7 +60,7 @@ void drawTools(ViewContext& context, ObliqueView& view, const Readout& readout, 
         ImGui::Checkbox("in 3D", &view.inSpace);
         if (ImGui::IsItemHovered()) tooltip("Draw the slice in the volume views too");
     }
-    const volume::DatasetInfo& numbers = context.numbers->info();
+    const volume::DatasetInfo& numbers = drawnSource(context)->info();
     exportPlanes(context, tools, "oblique", {tiltedPlane(context.session, numbers, view.normal, shows)}, 1,
                  comparedChannels(numbers));
     if (view.showReadout) copyReadout(context, tools, readout);

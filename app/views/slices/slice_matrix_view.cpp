@@ -69,7 +69,7 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
     std::vector<PlanePicture> slices; // with a row for each parameter
     for (const int channel : shown)
         for (int plane = 0; plane < view.planes; ++plane)
-            slices.push_back(matrixSlice(context.session, context.numbers->info(), view, axes, channel, plane));
+            slices.push_back(matrixSlice(context.session, drawnSource(context)->info(), view, axes, channel, plane));
     exportPlanes(context, tools, "slices", std::move(slices), view.planes, shown);
     if (tools.fits(ImGui::CalcTextSize(directions.c_str()).x)) drawNote(tools, directions);
 }
