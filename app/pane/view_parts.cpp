@@ -1,7 +1,9 @@
 #include "app/pane/view_parts.h"
 
+#include "app/pane/axes3d.h"
 #include "app/pane/plot.h"
 #include "app/session/shown_scene.h"
+#include "app/ui/fitted_text.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 
@@ -293,6 +295,30 @@ ImTextureID textureId(vis::TextureName name) {
 
 void addPicture(ImDrawList& draw, vis::TextureName texture, ImVec2 min, ImVec2 max) {
     draw.AddImage(textureId(texture), min, max, {0, 1}, {1, 0});
+}
+
+void drawStretch(const ViewContext& context) {
+    const volume::AxisMaps& axes = context.source->info().lattice.axes;
+    const std::string whole = stretchText(context.session.stretch, axes), uneven = stretchText(glm::dvec3(1), axes);
+    if (whole.empty()) return;
+    if (ImGui::GetCursorPosY() > ImGui::GetCursorStartPos().y) ImGui::SameLine();
+    const float room = ImGui::GetContentRegionAvail().x - em();
+    std::string text =
+        firstThatFits({whole, whole.substr(whole.find(' ') + 1), uneven, uneven.empty() ? "" : "by cells", ""}, room);
+    const bool beside = !text.empty();
+    if (!beside) text = uneven.empty() ? "" : "by cells";
+    const float width = ImGui::CalcTextSize(text.c_str()).x;
+    if (beside)
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+    else
+        ImGui::NewLine();
+    if (text.empty()) return;
+    if (!beside) ImGui::SetCursorPosX(std::max(ImGui::GetContentRegionMax().x - width, ImGui::GetCursorPosX()));
+    ImGui::AlignTextToFramePadding();
+    if (context.decoration.title)
+        ImGui::TextDisabled("%s", text.c_str());
+    else
+        ImGui::Dummy({width, em()});
 }
 
 } // namespace tessera::app

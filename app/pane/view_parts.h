@@ -87,4 +87,8 @@ ImTextureID textureId(vis::TextureName name);
 /// A picture of the renderer between two corners; its rows run upwards, as GL has them.
 void addPicture(ImDrawList& draw, vis::TextureName texture, ImVec2 min, ImVec2 max);
 
+/// The stretch of the box, if it has one, and what is drawn by cells, at the end of the line of tools. What is not to
+/// scale always says so, if need be on a line of its own.
+void drawStretch(const ViewContext& context);
+
 } // namespace tessera::app

@@ -49,6 +49,8 @@ TEST_F(UnevenViews, SayThatTheyAreNotToScale) {
     const std::string badge = "x, z by cells";
     EXPECT_TRUE(says(textsOf("volume", volumeView, drawVolumeView, {640, 480}), "stretch 1 : 5 : 2, " + badge));
     EXPECT_TRUE(says(textsOf("slices", slicesView, drawSlicesView, {640, 480}), badge));
+    EXPECT_TRUE(says(textsOf("slices", slicesView, drawSlicesView, {150, 480}), "by cells")) << "a narrow pane, too";
+    EXPECT_TRUE(says(textsOf("sliceMatrix", sliceMatrixView, drawSliceMatrixView, {640, 480}), badge));
     EXPECT_TRUE(says(textsOf("shadowCube", shadowCubeView, drawShadowCubeView, {640, 480}), badge));
     EXPECT_TRUE(says(textsOf("tesseract", tesseractView, drawTesseractView, {900, 480}), badge));
     showLayers(true);
@@ -110,7 +112,6 @@ TEST_F(UnevenViews, TicksOfThe3DPictureStandAtTheirNumbers) {
 
 TEST_F(UnevenViews, TicksOfSlicesStandAtTheirNumbers) {
     showLayers();
-    SliceMatrixView matrix;
     ObliqueView tilted;
     tilted.normal = {0, 1, 0};
     const auto texts = textsOf("oblique", tilted, drawObliqueView, {900, 640});

@@ -97,6 +97,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     const SliceAxes axes = axesOf(view.axis, world);
     view.planes = std::clamp(view.planes, 1, 12);
     drawToolbar(context, view, shown, axes);
+    drawStretch(context);
     if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
     if (!(world.halfSize[axes.right] > 0) || !(world.halfSize[axes.up] > 0))
         return drawHint("No extent", "The data have no extent within these planes.");

@@ -42,26 +42,6 @@ void drawSlicesTools(ViewContext& context, SlicesView& view, const Readout& read
     if (view.showReadout) copyReadout(context, tools, readout);
 }
 
-/// The stretch of the box, if it has one, at the end of the line of tools.
-void drawStretch(const ViewContext& context) {
-    const std::string whole = stretchText(context.session.stretch, context.source->info().lattice.axes);
-    if (whole.empty()) return;
-    if (ImGui::GetCursorPosY() > ImGui::GetCursorStartPos().y) ImGui::SameLine();
-    const float room = ImGui::GetContentRegionAvail().x - em();
-    const std::string text = firstThatFits({whole, whole.substr(whole.find(' ') + 1), ""}, room);
-    const float width = ImGui::CalcTextSize(text.c_str()).x;
-    if (!text.empty()) {
-        ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
-        ImGui::AlignTextToFramePadding();
-        if (context.decoration.title)
-            ImGui::TextDisabled("%s", text.c_str());
-        else
-            ImGui::Dummy({width, em()});
-    } else {
-        ImGui::NewLine();
-    }
-}
-
 /// The room of a slice in the pane, and that of its picture between its axes.
 struct SliceRoom {
     PlaneAxes axes;
