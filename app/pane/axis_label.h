@@ -16,7 +16,8 @@ struct AxisLabel {
     LengthUnit unit;
     std::shared_ptr<const volume::AxisMap> map = {}; ///< of an axis that is drawn by cells
     bool reversed = false;                           ///< positions along the axis of the map, times -1
-    bool blank = false; ///< positions have no numbers: the direction runs across several axes, of which one is uneven or more
+    bool blank =
+        false; ///< positions have no numbers: the direction runs across several axes, of which one is uneven or more
 
     /// Of positions in the unit.
     AxisScale scale() const { return {map, unit.perUnit, reversed, blank}; }

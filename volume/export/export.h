@@ -25,9 +25,9 @@ struct ExportSelection {
 /// - .vti  VTK image data, point data, appended raw, one time; vectors as arrays of 3; field data TimeValue and units
 ///         ("O2 mol/m3; T K"). Several times: OUT_0000.vti ... and OUT.pvd. A .pvd path gives the same with any number,
 ///         of uneven axes as .vtr.
-/// - .vtr  the same as a VTK rectilinear grid, whose coordinates are those of the axes bit for bit. Cell data between
-///         the planes if an axis is of cells, else point data. Of both, even axes get borders half a cell from the samples,
-///         axes of points get them in the middle between samples and have the places in field data "points_x".
+/// - .vtr  the same as a VTK rectilinear grid, whose coordinates are those of the axes bit for bit. Cell data if an
+///         axis is of cells, between its planes, else point data. Of both, even axes get borders half a cell from the
+///         samples, axes of points get them in the middle between samples and have the places in field data "points_x".
 /// - .nrrd one parameter at one time, of a vector all components (a first axis of the kind "vector"), or one channel.
 /// - .raw  (or .json) samples `[time][component][z][y][x]` as stored, and the sidecar beside them that `openFiles`
 ///         reads, with the planes of uneven axes; a parameter whose type differs from the first's has its own "dtype",
