@@ -96,7 +96,8 @@ std::string changesText(const Session& session, const CompareVariant& variant) {
             if (const auto colon = title.rfind(": "); colon != std::string::npos) title = title.substr(colon + 2);
         const Json parsed = Json::parse(value, nullptr, false);
         std::string shown = parsed.is_string() ? parsed.get<std::string>() : value;
-        if (path == "/data/lattice") title = "lattice", shown = shown == "bodyCentred" ? "BCC" : shown == "even" ? "to scale" : "CC";
+        if (path == "/data/lattice")
+            title = "lattice", shown = shown == "bodyCentred" ? "BCC" : shown == "even" ? "to scale" : "CC";
         if (parsed.is_object() && parsed.empty()) shown.clear();
         if (parsed.is_object() && !parsed.empty()) {
             const Json base = toJson(session);
