@@ -290,12 +290,15 @@ TEST(ToScaleRule, ArchivesInSpaceAndTimeAreDrawnAsStored) {
     options.discard = 1e-3; // so the samples of the grid are not kept
     codec::pack(made, options, folder / "a.tsr");
     std::vector<std::string> said;
-    const DataRef data = archived(folder / "a.tsr");
-    const Sources stored = openSources(data, said);
-    ASSERT_FALSE(canChooseLattice(data, *stored.numbers, stored.origin));
-    const Opened first = openedFirst(data, PictureLattice::Even);
-    EXPECT_EQ(first.document.session.data.lattice, PictureLattice::Grid);
-    EXPECT_EQ(first.source, first.numbers);
+    DataRef data = archived(folder / "a.tsr");
+    for (const ShownGrids grids : {ShownGrids::Both, ShownGrids::First}) {
+        data.grids = grids;
+        const Sources stored = openSources(data, said);
+        ASSERT_FALSE(canChooseLattice(data, *stored.numbers, stored.origin));
+        const Opened first = openedFirst(data, PictureLattice::Even);
+        EXPECT_EQ(first.document.session.data.lattice, PictureLattice::Grid);
+        EXPECT_EQ(first.source, first.numbers);
+    }
 }
 
 TEST(ToScaleRule, OtherDataAreReadForTheLatticeThatIsDrawn) {
