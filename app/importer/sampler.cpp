@@ -28,10 +28,11 @@ double placeAt(const volume::Lattice& lattice, int axis, double cells) {
     return lattice.axes.toSpace(axis, lattice.origin[axis] + lattice.spacing[axis] * cells);
 }
 
-/// A coordinate within a cell; one of its borders where the sample lies there, as it was looked up beside it (kAside).
-double onBorder(double pcoord) {
-    const double border = std::round(pcoord);
-    return std::abs(pcoord - border) < kSlack ? border : pcoord;
+/// A coordinate within a cell; that of a border or the middle where the sample lies there, as it was looked up beside
+/// it (kAside).
+double asMeant(double pcoord) {
+    const double meant = std::round(2 * pcoord) / 2;
+    return std::abs(pcoord - meant) < kSlack ? meant : pcoord;
 }
 
 /// Weights of the corners of a cell at a place in its own coordinates. Those of a polyhedron and a polygon are by
@@ -109,7 +110,7 @@ std::shared_ptr<const Sampling> makeSampling(vtkDataSet* mesh, const volume::Lat
                         continue;
                     sampling->cells[at] = static_cast<std::int32_t>(c);
                     for (std::size_t axis = 0; axis < 3; ++axis)
-                        sampling->pcoords[at * 3 + axis] = static_cast<float>(onBorder(pcoords[axis]));
+                        sampling->pcoords[at * 3 + axis] = static_cast<float>(asMeant(pcoords[axis]));
                 }
     }
     return sampling;
