@@ -335,7 +335,8 @@ Assembled assemble(std::vector<OpenedFile> files, const ImportOptions& options, 
     const bool named = std::ranges::find(info.parameters, "region", &Parameter::name) != info.parameters.end();
     if (!found.anyLabel && found.blocks > 1 && !named) {
         Parameter region{"region", "", 1, ScalarType::U8, true, {}, {}};
-        if (readSamples) {
+        constexpr double kQuickSamples = 2e7; // of all blocks: previews too say which region lost its volume
+        if (readSamples || double(all->lattice.count()) * double(found.blocks) <= kQuickSamples) {
             all->label = labelOfBlocks(all->groups, all->lattice, info.bounds, result.notes, progress);
             region.labels = all->label.labels;
         }

@@ -26,8 +26,8 @@ struct Assembled {
 /// are merged onto one grid (the first that has a sample is used), several files on one grid add parameters. If there
 /// is no label, `region` is created from the names of mesh blocks. If files store an array in different types, all its
 /// frames get one type that holds their numbers (commonType). `options` say on which grid meshes are sampled. Without
-/// `readSamples` no sample is read (the values of a created label are then not yet known). Throws Error when the files
-/// do not fit together.
+/// `readSamples` no sample is read, but for a created label of few samples (the values of others are not yet known).
+/// Throws Error when the files do not fit together.
 Assembled assemble(std::vector<OpenedFile> files, const ImportOptions& options, bool readSamples,
                    const Progress& progress);
 
