@@ -31,12 +31,7 @@ double weightOf(const AxisEvent& event) {
 /// Adds `other`, which lies beside it; the place is that of the larger cross-section.
 void join(AxisEvent& event, const AxisEvent& other) {
     if (weightOf(other) > weightOf(event)) event.place = other.place;
-    event.begun += other.begun;
-    event.ended += other.ended;
-    event.areaBegun += other.areaBegun;
-    event.areaEnded += other.areaEnded;
-    event.perLengthBegun += other.perLengthBegun;
-    event.perLengthEnded += other.perLengthEnded;
+    event.add(other);
 }
 
 /// Mean extent of the cells of an event.

@@ -244,17 +244,10 @@ AxisEvents joinedEvents(AxisEvents both) {
     std::ranges::sort(both, {}, &AxisEvent::place);
     AxisEvents out;
     for (const AxisEvent& event : both) {
-        if (out.empty() || event.place > out.back().place) {
+        if (out.empty() || event.place > out.back().place)
             out.push_back(event);
-            continue;
-        }
-        AxisEvent& into = out.back();
-        into.begun += event.begun;
-        into.ended += event.ended;
-        into.areaBegun += event.areaBegun;
-        into.areaEnded += event.areaEnded;
-        into.perLengthBegun += event.perLengthBegun;
-        into.perLengthEnded += event.perLengthEnded;
+        else
+            out.back().add(event);
     }
     return out;
 }

@@ -28,6 +28,16 @@ struct AxisEvent {
     double areaBegun = 0, areaEnded = 0;           ///< their cross-sections
     double perLengthBegun = 0, perLengthEnded = 0; ///< 1 / extent
     bool operator==(const AxisEvent&) const = default;
+
+    /// Adds the sums of another; the place stays.
+    void add(const AxisEvent& other) {
+        begun += other.begun;
+        ended += other.ended;
+        areaBegun += other.areaBegun;
+        areaEnded += other.areaEnded;
+        perLengthBegun += other.perLengthBegun;
+        perLengthEnded += other.perLengthEnded;
+    }
 };
 using AxisEvents = std::vector<AxisEvent>; ///< places rise
 
