@@ -57,9 +57,10 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
     : folder_(output + ".blocks"), launched_(launched) {
     const auto begin = std::chrono::steady_clock::now();
     const std::string own = file(fileOf(kLeft, launched.job, launched.rank));
+    bool made = false; // by this process: whoever has been in the folder belongs to this run
     for (;;) {
         std::error_code problem;
-        if (launched.rank == 0) fs::create_directory(folder_, problem);
+        if (launched.rank == 0) made = fs::create_directory(folder_, problem) || made;
         if (problem) throw MachineError("cannot be made: " + problem.message(), folder_);
         // Whether this process belongs to the work that has been completed here, and has not been in it yet.
         const auto isOwn = [&] {
@@ -71,7 +72,7 @@ SharedJob::SharedJob(const std::string& output, const std::string& about, const 
                 if (!remove(std::move(*alone))) throw MachineError("is complete, and cannot be removed", folder_);
                 continue;
             }
-            if (!complete()) removeEnded();
+            if (!complete()) removeEnded(launched.rank == 0 && !made);
             removeScratch({});
         }
         inside_ = LockedFile::tryLock(file(kLock), LockedFile::Kind::Shared);
@@ -119,14 +120,15 @@ void SharedJob::removeScratch(const std::string& begin) const {
 }
 
 /// Removes what processes left that have ended without completing the work; nobody is inside. Those of this job may
-/// have left it to others that are still to come: the first process of a job knows that none has been there.
-void SharedJob::removeEnded() const {
+/// have left it to others that are still to come: only its first process can tell (`ownToo`), where it found the folder
+/// instead of making it, that they are of an earlier run.
+void SharedJob::removeEnded(bool ownToo) const {
     const std::string own = launched_.job + "-", ownRanks = std::string(kRanks) + launched_.job;
     std::error_code ignored;
     for (const std::string_view begins : {kRanks, kCame, kLeft})
         for (const std::string& name : namesIn(folder_, begins)) {
             const bool isOwn = name == ownRanks || (begins != kRanks && name.starts_with(std::string(begins) + own));
-            if (launched_.rank == 0 || !isOwn) fs::remove(file(name), ignored);
+            if (ownToo || !isOwn) fs::remove(file(name), ignored);
         }
 }
 

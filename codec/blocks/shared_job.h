@@ -51,7 +51,7 @@ public:
 private:
     static constexpr const char* kScratch = "scratch-";
 
-    void removeEnded() const;
+    void removeEnded(bool ownToo) const;
     bool remove(LockedFile alone) const;
     bool holdsWork() const;
     /// Waits a little, longer the next time, between two looks at what others are doing.
