@@ -50,6 +50,21 @@ TEST(FindParts, AJumpSplitsAndASlopeDoesNot) {
         << "less than a five-hundredth of the range";
 }
 
+/// A thick layer of one cell on thin cells: its sample is far away, and only the other side has a slope.
+TEST(FindParts, SlopesAreByTrueDistances) {
+    const auto z = std::make_shared<const AxisMap>(AxisMap::Of::Cells, std::vector<double>{0, 1, 2, 3, 4, 5, 105});
+    const Lattice lattice = withAxes(ccLattice({4, 4, 1}), {{nullptr, nullptr, z}});
+    const auto found = [&](double jump) {
+        Dataset dataset = labelled(
+            lattice, [&](glm::dvec3 p) { return p.z + (p.z > 5 ? jump : 0); },
+            [](glm::dvec3 p) { return p.z > 5 ? 3 : 1; });
+        findParts(dataset, {});
+        return dataset.info.parameters[0].parts;
+    };
+    EXPECT_EQ(found(0), Parts{}) << "a line goes on";
+    EXPECT_EQ(found(1000), (Parts{"region", {{1}, {3}}}));
+}
+
 TEST(FindParts, AJumpAtAnyOfTheTimesLookedAt) {
     const Lattice lattice = ccLattice({8, 13, 8});
     std::vector<Field> fields;
@@ -131,7 +146,7 @@ TEST(FindParts, TheBuiltInCellSaysWhatItsSamplesShow) {
         if (stated[p].name != "T") { // between plate and gas it changes within a cell, on this grid a jump
             EXPECT_EQ(cell.info.parameters[p].parts, stated[p].parts) << stated[p].name;
         }
-    EXPECT_EQ(partsText(stated[2]), "2 parts by region: 1,2 | 4,5");
+    EXPECT_EQ(partsText(stated[2]), "2 parts by region: 1,2,6 | 4,5,7");
 }
 
 // Both grids of the fuel cell: gases and pressure jump across the membrane, the temperature does not.

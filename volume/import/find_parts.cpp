@@ -1,5 +1,7 @@
 #include "volume/import/find_parts.h"
 
+#include "volume/field/own_axes.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,14 +47,17 @@ Samples samplesOf(const Field& field, const Field& label) {
     return out;
 }
 
-/// Looks along one line of samples.
-void alongLine(const Samples& samples, std::size_t first, std::size_t step, int count, Borders& borders) {
+/// Looks along one line of samples, which are at these places of their axis.
+void alongLine(const Samples& samples, std::size_t first, std::size_t step, const std::vector<double>& places,
+               Borders& borders) {
+    const int count = int(places.size());
     const auto at = [&](int i) { return first + std::size_t(i) * step; };
-    // The difference to the next sample, or nothing if that is in another region.
+    const auto between = [&](int a, int b) { return std::abs(places[std::size_t(b)] - places[std::size_t(a)]); };
+    // The slope towards the next sample, or nothing if that is in another region.
     const auto slope = [&](int i, int side, int region) -> std::optional<double> {
         const int next = i + side;
         if (next < 0 || next >= count || samples.regions[at(next)] != region) return std::nullopt;
-        return (samples.values[at(next)] - samples.values[at(i)]) * side;
+        return (samples.values[at(next)] - samples.values[at(i)]) * side / between(i, next);
     };
     int before = -1; // the last sample present
     for (int i = 0; i < count; ++i) {
@@ -64,7 +69,7 @@ void alongLine(const Samples& samples, std::size_t first, std::size_t step, int 
         const int other = samples.regions[at(last)];
         if (other == region) continue;
         const std::optional<double> lower = slope(last, -1, other), upper = slope(i, 1, region);
-        const double gap = i - last;
+        const double gap = between(last, i);
         const double a = lower ? *lower : upper.value_or(0), b = upper ? *upper : lower.value_or(0);
         Border::Pairs& pairs = borders[std::minmax(region, other)].by[(lower ? 1u : 0u) + (upper ? 1u : 0u)];
         pairs.jump.push_back(std::abs(samples.values[at(i)] - samples.values[at(last)] - gap * (a + b) / 2));
@@ -72,8 +77,10 @@ void alongLine(const Samples& samples, std::size_t first, std::size_t step, int 
     }
 }
 
-Borders bordersOf(const Samples& samples, glm::ivec3 size) {
+Borders bordersOf(const Samples& samples, const Lattice& lattice) {
     Borders borders;
+    const glm::ivec3 size = lattice.size;
+    const std::array<std::vector<double>, 3> places = samplePlaces(lattice);
     const std::array<std::size_t, 3> steps{1, std::size_t(size.x), std::size_t(size.x) * std::size_t(size.y)};
     const std::size_t stride = std::max<std::size_t>(1, samples.values.size() / kMostSamples);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -82,8 +89,8 @@ Borders bordersOf(const Samples& samples, glm::ivec3 size) {
         for (int j = 0; j < size[int(v)]; ++j)
             for (int i = 0; i < size[int(u)]; ++i, ++line)
                 if (line % stride == 0)
-                    alongLine(samples, std::size_t(i) * steps[u] + std::size_t(j) * steps[v], steps[axis],
-                              size[int(axis)], borders);
+                    alongLine(samples, std::size_t(i) * steps[u] + std::size_t(j) * steps[v], steps[axis], places[axis],
+                              borders);
     }
     return borders;
 }
@@ -167,7 +174,7 @@ Parts foundParts(const Dataset& dataset, int parameter, int label, const Progres
             }
             if (regions.size() > kMostValues) return {};
             range = std::max(range, hi - lo);
-            if (regions.size() > 1) borders.push_back(bordersOf(samples, labels.lattice.size));
+            if (regions.size() > 1) borders.push_back(bordersOf(samples, labels.lattice));
         }
         for (const Borders& of : borders)
             for (const auto& [pair, border] : of) {
