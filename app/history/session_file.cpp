@@ -97,6 +97,22 @@ void keepEvenGrid(Json& document) {
     if (const auto other = data->find("other"); other != data->end() && other->is_object()) keepEvenGridOf(*other);
 }
 
+void keepEvenCellOf(Json& data) {
+    const auto model = data.find("model");
+    if (model == data.end() || *model != "fuel-cell") return;
+    Json& settings = data["settings"];
+    if (settings.is_null()) settings = Json::object();
+    if (settings.is_object() && !settings.contains("even")) settings["even"] = 1;
+}
+
+/// Up to schema 4 the cells of the built-in fuel cell were all of one height.
+void keepEvenCell(Json& document) {
+    const auto data = document.find("data");
+    if (data == document.end() || !data->is_object()) return;
+    keepEvenCellOf(*data);
+    if (const auto other = data->find("other"); other != data->end() && other->is_object()) keepEvenCellOf(*other);
+}
+
 } // namespace
 
 void migrate(Json& document, const std::string& file) {
@@ -115,6 +131,7 @@ void migrate(Json& document, const std::string& file) {
                     file, "/schema");
     if (schema < 3) migrateLattice(document);
     if (schema < 4) keepEvenGrid(document);
+    if (schema < 5) keepEvenCell(document);
     document["schema"] = kSessionSchema;
 }
 

@@ -149,6 +149,22 @@ TEST_F(SessionFileTest, EarlySchemasAreRefusedByName) {
     EXPECT_EQ(parseSession("{\"schema\": 2}", "x").session.schema, kSessionSchema);
 }
 
+/// Sessions of the fuel cell as it was before its layers had cells of their own still show that one.
+TEST_F(SessionFileTest, TheFuelCellOfEarlierSessionsIsTheEvenOne) {
+    const auto settings = [](const std::string& text) { return parseSession(text, "x").session.data.settings; };
+    using Settings = std::map<std::string, double>;
+    EXPECT_EQ(settings(R"({"schema": 4, "data": {"model": "fuel-cell", "settings": {"nz": 20}}})"),
+              (Settings{{"even", 1}, {"nz", 20}}));
+    EXPECT_EQ(settings(R"({"schema": 2, "data": {"model": "fuel-cell"}})"), (Settings{{"even", 1}}));
+    EXPECT_EQ(settings(R"({"schema": 4, "data": {"model": "casting"}})"), Settings());
+    EXPECT_EQ(settings(R"({"schema": 5, "data": {"model": "fuel-cell"}})"), Settings());
+    const auto other =
+        parseSession(R"({"schema": 4, "data": {"model": "casting", "other": {"model": "fuel-cell"}}})", "x")
+            .session.data.other;
+    ASSERT_TRUE(other);
+    EXPECT_EQ(other->settings, (Settings{{"even", 1}}));
+}
+
 TEST_F(SessionFileTest, LayersOfALensThatIsMissingAreHidden) {
     volume::DatasetInfo info;
     info.bounds = {glm::dvec3(0), glm::dvec3(1)};

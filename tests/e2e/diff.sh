@@ -62,7 +62,7 @@ check "no such file" 2 "$tessera" diff coarse.raw none.raw
 
 # An archive that was resampled and its source are compared on the grid of the source: what unpacking gives, either way round,
 # and what packing has said.
-check "a cell" 0 "$tessera" generate fuel-cell -o cell.vti --size 9x11x23 --times 1
+check "a cell" 0 "$tessera" generate fuel-cell --even -o cell.vti --size 9x11x23 --times 1
 check "on BCC" 0 "$tessera" pack cell.vti -o bcc.tsr --lattice bcc
 check "unpacked" 0 "$tessera" unpack bcc.tsr -o unpacked.vti
 rows() { sed -n '/^Parameter/,$p' out.txt | sed 1d; } # numbers by parameter

@@ -8,7 +8,7 @@ has_importer() { [ -x "$(dirname "$tessera")/tessera-import" ]; }
 trap 'kill $(jobs -p) 2> /dev/null; rm -rf "$work"' EXIT
 
 times=12
-"$tessera" generate fuel-cell -o cell.tsr --size 9x11x24 --times $times > /dev/null || die "generate"
+"$tessera" generate fuel-cell --even -o cell.tsr --size 9x11x24 --times $times > /dev/null || die "generate"
 mkdir whole
 "$tessera" info cell.tsr --json | python3 -c 'import json, sys; print(*json.load(sys.stdin)["times"])' > times
 number=0

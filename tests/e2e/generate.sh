@@ -11,13 +11,13 @@ for name in O2 H2 H2O p T U region "cathode GDL" "mol/m3"; do
 done
 
 # Three times as .vti: numbered files and a series; once: a single file.
-check "a series" 0 "$tessera" generate fuel-cell -o cell.vti --size 7x13x20 --times 3
+check "a series" 0 "$tessera" generate fuel-cell --even -o cell.vti --size 7x13x20 --times 3
 for file in cell_0000.vti cell_0001.vti cell_0002.vti cell.pvd; do [ -s $file ] || fail "no $file"; done
-check "one time" 0 "$tessera" generate fuel-cell -o one.vti --size 7x13x20 --times 1
+check "one time" 0 "$tessera" generate fuel-cell --even -o one.vti --size 7x13x20 --times 1
 [ -s one.vti ] || fail "no one.vti"
 
 # Packed as CC without loss and unpacked, the raw samples are those generated.
-check "raw" 0 "$tessera" generate fuel-cell -o direct.raw --size 7x13x20 --times 2
+check "raw" 0 "$tessera" generate fuel-cell --even -o direct.raw --size 7x13x20 --times 2
 check "lossless on CC" 0 "$tessera" generate fuel-cell -o cc.tsr --size 7x13x20 --times 2 --lattice cc --lossless
 check "unpack" 0 "$tessera" unpack cc.tsr -o back.raw
 cmp direct.raw back.raw || fail "the way through an archive changed samples"

@@ -5,7 +5,7 @@ tessera=$1
 source "$2/tests/e2e/common.bash"
 kills=${KILLS:-6}
 
-"$tessera" generate fuel-cell -o all.raw --size 17x21x48 --times 5 > /dev/null || die "generate"
+"$tessera" generate fuel-cell --even -o all.raw --size 17x21x48 --times 5 > /dev/null || die "generate"
 cp all.raw later.raw
 python3 -c 'import json; about = json.load(open("all.json")); about["times"] = [time + 1000 for time in about["times"]]
 json.dump(about, open("later.json", "w"))'

@@ -3,7 +3,7 @@
 tessera=$1
 source "$2/tests/e2e/common.bash"
 
-"$tessera" generate fuel-cell -o cell.raw --size 11x13x21 --times 2 > /dev/null 2>err || die "make a cell"
+"$tessera" generate fuel-cell --even -o cell.raw --size 11x13x21 --times 2 > /dev/null 2>err || die "make a cell"
 "$tessera" stats cell.raw --time 0 > out.txt 2>err || die "statistics of regions"
 say 'Parameter' out.txt
 say 'numbers as computed' out.txt
@@ -72,7 +72,7 @@ for line, other in zip(a, b):
             assert abs(number(x) - number(y)) <= max(2e-9 * abs(number(x)), 1e-11 * most), (line, other)
 PY
 }
-"$tessera" generate fuel-cell -o series.raw --size 11x13x21 --times 8 > /dev/null 2>err || die "make a series"
+"$tessera" generate fuel-cell --even -o series.raw --size 11x13x21 --times 8 > /dev/null 2>err || die "make a series"
 for lattice in cc bcc d4; do
     "$tessera" pack series.raw -o "$lattice.tsr" --lattice $lattice --max-error 0.01 > /dev/null 2>err || die "pack on $lattice"
     "$tessera" info "$lattice.tsr" > out.txt && say '  regions    their numbers as computed from the source, ' out.txt

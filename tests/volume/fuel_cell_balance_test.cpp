@@ -44,7 +44,7 @@ TEST(FuelCellBalance, HeatLeavesThroughThePlatesAndWithTheGas) {
                                             : region == CellRegion::AnodeChannel ? cell::kConductivityHydrogen
                                                                                  : cell::kConductivityAir;
                 // Half a cell of the material, then the way into the coolant.
-                const double resistance = 0.5 * g.dy / conductivity + 1 / cell::kCoolantTransfer;
+                const double resistance = 0.5 * g.height[std::size_t(y)] / conductivity + 1 / cell::kCoolantTransfer;
                 plates += g.dx * g.dz * (at(x, y, z) - s.settings().coolantTemperature) / resistance;
             }
     // Each cell warms the gas that flows in.

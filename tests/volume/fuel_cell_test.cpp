@@ -66,6 +66,46 @@ TEST(FuelCell, GasesBalanceTheCurrent) {
     EXPECT_LT(s.meanCurrent(), 2e4);
 }
 
+/// The layers are as thick as they are said to be, whatever the number of rows, and the integral of each is that of
+/// its cells.
+TEST(FuelCell, LayersHaveTheirOwnThickness) {
+    for (const int ny : {7, 13, 20, 90}) {
+        const Dataset data = makeFuelCell({{"nx", 11}, {"ny", ny}, {"nz", 4}, {"times", 1}});
+        const Lattice& lattice = data.info.lattice;
+        const Field region = data.read(6, 0, 0);
+        std::array<double, 8> thickness{};
+        const int x = 5; // through the channels
+        for (int y = 0; y < ny; ++y)
+            thickness[std::size_t(region.value(lattice.index({x, y, 0})))] +=
+                lattice.lengthsAt(lattice.position({x, y, 0})).y;
+        const auto expected = [&](CellRegion layer, double metres) {
+            EXPECT_NEAR(thickness[std::size_t(layer)] / metres, 1, 1e-9) << ny << ", " << int(layer);
+        };
+        for (const CellRegion layer : {CellRegion::AnodeChannel, CellRegion::CathodeChannel}) expected(layer, 400e-6);
+        for (const CellRegion layer : {CellRegion::AnodeGdl, CellRegion::CathodeGdl}) expected(layer, 200e-6);
+        for (const CellRegion layer : {CellRegion::AnodeCatalyst, CellRegion::CathodeCatalyst}) expected(layer, 10e-6);
+        expected(CellRegion::Membrane, 51e-6);
+        EXPECT_NEAR(data.info.bounds.size().y, 1271e-6, 1e-12);
+        EXPECT_NEAR(data.info.bounds.size().z, 40e-3, 1e-9) << "to the faces of the cells";
+    }
+}
+
+/// The even cell is that of sessions and files made before the layers had cells of their own.
+TEST(FuelCell, AnEvenCellHasNoAxesAndOneMembraneLayer) {
+    const Dataset data = makeFuelCell({{"even", 1}, {"times", 1}});
+    EXPECT_TRUE(data.info.lattice.axes.isEven());
+    EXPECT_DOUBLE_EQ(data.info.lattice.spacing.y, 1e-4);
+    FuelCellSettings settings;
+    settings.even = true;
+    FuelCellSolver s(settings);
+    s.settle(0.55);
+    EXPECT_NEAR(s.meanCurrent(), 9080, 20);
+    const double charge = s.totalCurrent() / cell::kFaraday;
+    const cell::Balance fuel = s.balance(0), air = s.balance(1);
+    EXPECT_NEAR((air.reactantIn - air.reactantOut) / (charge / 4), 1, 1e-3);
+    EXPECT_NEAR((fuel.reactantIn - fuel.reactantOut) / (charge / 2), 1, 1e-3);
+}
+
 TEST(FuelCell, BalanceHoldsWhileTheLoadChanges) {
     FuelCellSolver s(sized(7, 13, 40));
     s.settle(0.75);
@@ -144,17 +184,18 @@ TEST(FuelCell, HottestWhereTheCurrentIs) {
     const cell::CellGrid& g = s.grid();
     const std::vector<double>& t = s.temperature();
     const auto at = [&](int x, int y, int z) { return t[std::size_t(x + g.nx * (y + g.ny * z))]; };
-    std::vector<double> membrane;
+    std::vector<double> catalyst;
     for (int z = 0; z < g.nz; ++z) {
-        for (int x = 0; x < g.nx; ++x) membrane.push_back(at(x, g.rows[2], z));
+        for (int x = 0; x < g.nx; ++x) catalyst.push_back(at(x, g.rows[4], z));
         int hottest = 0;
         for (int y = 1; y < g.ny; ++y)
             if (at(g.nx / 2, y, z) > at(g.nx / 2, hottest, z)) hottest = y;
-        EXPECT_EQ(g.region(g.nx / 2, hottest), CellRegion::Mea) << z;
+        EXPECT_EQ(g.region(g.nx / 2, hottest), CellRegion::CathodeCatalyst) << z;
     }
-    EXPECT_GT(correlation(membrane, s.current()), 0.8);
+    EXPECT_GT(correlation(catalyst, s.current()), 0.8);
     const auto peak = std::size_t(std::max_element(t.begin(), t.end()) - t.begin());
-    EXPECT_EQ(g.region(int(peak % std::size_t(g.nx)), int(peak / std::size_t(g.nx)) % g.ny), CellRegion::Mea);
+    EXPECT_EQ(g.region(int(peak % std::size_t(g.nx)), int(peak / std::size_t(g.nx)) % g.ny),
+              CellRegion::CathodeCatalyst);
     EXPECT_GT(t[peak], s.settings().coolantTemperature + 1);
     EXPECT_LT(t[peak], s.settings().coolantTemperature + 15);
 }
@@ -234,15 +275,16 @@ TEST(FuelCell, LoadStepRaisesTheCurrent) {
     EXPECT_NEAR(s.meanCurrent() / steady.meanCurrent(), 1, 1e-3);
 }
 
-void expectMasks(int nx, int ny, int nz) {
+void expectMasks(int nx, int ny, int nz, bool even = false) {
     SCOPED_TRACE(nx);
-    const Dataset data = makeFuelCell({{"nx", nx}, {"ny", ny}, {"nz", nz}, {"times", 2}});
+    const Dataset data = makeFuelCell({{"nx", nx}, {"ny", ny}, {"nz", nz}, {"times", 2}, {"even", even}});
     const DatasetInfo& info = data.info;
     EXPECT_EQ(info.lattice.size, glm::ivec3(nx, ny, nz));
     const Field region = data.read(6, 0, 0);
     ASSERT_TRUE(info.parameters[6].categorical);
-    std::array<int, 6> seen{};
-    for (std::size_t i = 0; i < region.count(); ++i) ++seen[std::size_t(region.value(i))];
+    std::vector<int> seen(even ? 6 : 8);
+    EXPECT_EQ(info.parameters[6].labels.size(), seen.size());
+    for (std::size_t i = 0; i < region.count(); ++i) ++seen.at(std::size_t(region.value(i)));
     for (int count : seen) EXPECT_GT(count, 0);
     for (int parameter = 0; parameter < 6; ++parameter) {
         const Parameter& described = info.parameters[std::size_t(parameter)];
@@ -255,8 +297,10 @@ void expectMasks(int nx, int ny, int nz) {
             int wrong = 0, outside = 0;
             for (std::size_t i = 0; i < field.count(); ++i) {
                 const auto r = CellRegion(int(region.value(i)));
-                const bool fuel = r == CellRegion::AnodeChannel || r == CellRegion::AnodeGdl;
-                const bool air = r == CellRegion::CathodeChannel || r == CellRegion::CathodeGdl;
+                const bool fuel =
+                    r == CellRegion::AnodeChannel || r == CellRegion::AnodeGdl || r == CellRegion::AnodeCatalyst;
+                const bool air =
+                    r == CellRegion::CathodeChannel || r == CellRegion::CathodeGdl || r == CellRegion::CathodeCatalyst;
                 const bool wanted = described.name == "T"    ? true
                                     : described.name == "O2" ? air
                                     : described.name == "H2" ? fuel
@@ -277,9 +321,12 @@ void expectMasks(int nx, int ny, int nz) {
 
 TEST(FuelCell, GasesAreAbsentWhereTheyCannotBe) {
     expectMasks(11, 13, 9);
-    expectMasks(3, 5, 4);
+    expectMasks(3, 7, 4);
+    expectMasks(3, 5, 4, true);
     expectMasks(17, 31, 5);
+    expectMasks(17, 31, 5, true);
     expectMasks(60, 70, 7);
+    EXPECT_THROW(makeFuelCell({{"ny", 6}, {"times", 1}}), Error) << "fewer rows than layers";
 }
 
 TEST(FuelCell, RefinedFramesAgreeWithSolvedOnes) {

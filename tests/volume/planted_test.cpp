@@ -11,7 +11,7 @@ namespace {
 
 using namespace planted;
 
-const std::map<std::string, double> kSettings{{"nx", 11}, {"ny", 13}, {"nz", 101}, {"times", 16}};
+const std::map<std::string, double> kSettings{{"nx", 11}, {"ny", 13}, {"nz", 101}, {"times", 16}, {"even", 1}};
 
 /// The model with and without the events.
 struct Pair {

@@ -1,6 +1,7 @@
 #include "volume/synthetic/fuel_cell.h"
 
 #include "volume/base/parallel.h"
+#include "volume/field/own_axes.h"
 #include "volume/synthetic/fuel_cell_solver.h"
 #include "volume/synthetic/settings.h"
 
@@ -37,8 +38,10 @@ struct Solution {
 };
 
 bool inSpace(CellRegion region, int space) {
-    return space == 0 ? region == CellRegion::AnodeChannel || region == CellRegion::AnodeGdl
-                      : region == CellRegion::CathodeChannel || region == CellRegion::CathodeGdl;
+    return space == 0 ? region == CellRegion::AnodeChannel || region == CellRegion::AnodeGdl ||
+                            region == CellRegion::AnodeCatalyst
+                      : region == CellRegion::CathodeChannel || region == CellRegion::CathodeGdl ||
+                            region == CellRegion::CathodeCatalyst;
 }
 
 Frame keep(const FuelCellSolver& solver) {
@@ -89,6 +92,19 @@ std::vector<Between> between(int shown, int solved) {
     return result;
 }
 
+/// The same for rows, by their middles (m, rising).
+std::vector<Between> between(const std::vector<double>& shown, const std::vector<double>& solved) {
+    std::vector<Between> result;
+    const int last = int(solved.size()) - 1;
+    for (const double at : shown) {
+        const auto above = std::ranges::upper_bound(solved, at) - solved.begin();
+        const int lo = std::clamp(int(above) - 1, 0, std::max(last - 1, 0)), hi = std::min(lo + 1, last);
+        const double begin = solved[std::size_t(lo)], step = solved[std::size_t(hi)] - begin;
+        result.push_back({lo, hi, step > 0 ? std::clamp((at - begin) / step, 0.0, 1.0) : 0});
+    }
+    return result;
+}
+
 /// Up to four solved cells of a cross-section from which a requested one is interpolated; offsets from the first cell
 /// of the plane.
 struct Stencil {
@@ -98,7 +114,7 @@ struct Stencil {
 
 /// Bilinear weights of the cells that are `inside`; if none of the four is, the nearest cell of the channel.
 template <class Inside> std::vector<Stencil> crossSection(const Solution& s, int yBegin, int rows, Inside&& inside) {
-    const auto xs = between(s.shown.nx, s.grid.nx), ys = between(s.shown.ny, s.grid.ny);
+    const auto xs = between(s.shown.nx, s.grid.nx), ys = between(s.shown.middles(), s.grid.middles());
     std::vector<Stencil> stencils;
     stencils.reserve(xs.size() * ys.size());
     for (int y = 0; y < s.shown.ny; ++y)
@@ -152,6 +168,15 @@ void spread(const Solution& s, std::span<const float> values, int yBegin, int ro
     });
 }
 
+Lattice latticeOf(const CellGrid& g, bool even) {
+    Lattice lattice;
+    lattice.size = {g.nx, g.ny, g.nz};
+    lattice.spacing = {g.dx, g.height.front(), g.dz};
+    lattice.origin = lattice.spacing * 0.5;
+    if (even) return lattice;
+    return withAxes(lattice, {{nullptr, std::make_shared<const AxisMap>(AxisMap::Of::Cells, g.planes()), nullptr}});
+}
+
 Field regionField(const Solution& s) {
     Field field = makeField(s.lattice, ScalarType::U8);
     auto out = field.as<std::uint8_t>();
@@ -185,7 +210,7 @@ Field loadField(const Solution& s, int parameter, int component, int time) {
     return field;
 }
 
-std::vector<Parameter> describeParameters() {
+std::vector<Parameter> describeParameters(bool even) {
     std::vector<Parameter> parameters(kParameters);
     const auto set = [&](int index, const char* name, const char* unit) {
         parameters[std::size_t(index)].name = name;
@@ -199,13 +224,17 @@ std::vector<Parameter> describeParameters() {
     region.categorical = true;
     region.labels = {{0, "land"},     {1, "anode channel"}, {2, "anode GDL"},
                      {3, "membrane"}, {4, "cathode GDL"},   {5, "cathode channel"}};
-    region.ranges = {{0, 5}};
+    if (!even) region.labels.insert(region.labels.end(), {{6, "anode catalyst"}, {7, "cathode catalyst"}});
+    region.ranges = {{0, double(region.labels.back().value)}};
     // Water and pressure jump across the membrane, which may be thinner than a cell.
-    const auto values = [](CellRegion a, CellRegion b) { return std::vector<int>{int(a), int(b)}; };
+    const auto values = [even](CellRegion a, CellRegion b, CellRegion catalyst) {
+        return even ? std::vector<int>{int(a), int(b)} : std::vector<int>{int(a), int(b), int(catalyst)};
+    };
     for (const int jumping : {kH2O, kPressure})
-        parameters[std::size_t(jumping)].parts = {"region",
-                                                  {values(CellRegion::AnodeChannel, CellRegion::AnodeGdl),
-                                                   values(CellRegion::CathodeGdl, CellRegion::CathodeChannel)}};
+        parameters[std::size_t(jumping)].parts = {
+            "region",
+            {values(CellRegion::AnodeChannel, CellRegion::AnodeGdl, CellRegion::AnodeCatalyst),
+             values(CellRegion::CathodeGdl, CellRegion::CathodeChannel, CellRegion::CathodeCatalyst)}};
     return parameters;
 }
 
@@ -272,12 +301,10 @@ Dataset makeFuelCell(const std::map<std::string, double>& given, const Progress&
     solved.nx = std::min(shown.nx, 44), solved.ny = std::min(shown.ny, 65), solved.nz = std::min(shown.nz, 256);
 
     auto solution = std::make_shared<Solution>();
-    solution->grid = CellGrid(solved.nx, solved.ny, solved.nz);
-    solution->shown = CellGrid(shown.nx, shown.ny, shown.nz);
+    solution->grid = CellGrid(solved);
+    solution->shown = CellGrid(shown);
     const CellGrid& g = solution->shown;
-    solution->lattice.size = {g.nx, g.ny, g.nz};
-    solution->lattice.spacing = {g.dx, g.dy, g.dz};
-    solution->lattice.origin = solution->lattice.spacing * 0.5;
+    solution->lattice = latticeOf(g, shown.even);
     solution->fuel = makeMask(g, true, false);
     solution->air = makeMask(g, false, true);
     solution->gases = makeMask(g, true, true);
@@ -301,8 +328,8 @@ Dataset makeFuelCell(const std::map<std::string, double>& given, const Progress&
     DatasetInfo& info = dataset.info;
     info.name = "fuel-cell";
     info.lattice = solution->lattice;
-    info.bounds = {solution->lattice.position({0, 0, 0}), solution->lattice.position({g.nx - 1, g.ny - 1, g.nz - 1})};
-    info.parameters = describeParameters();
+    info.bounds = gridBounds(info.lattice);
+    info.parameters = describeParameters(shown.even);
     fillRanges(*solution, info.parameters);
     checkRanges(info.parameters);
     info.times = times;

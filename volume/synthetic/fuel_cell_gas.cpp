@@ -27,10 +27,11 @@ std::vector<double> ductProfile(const GasSpace& space, const CellGrid& g) {
                 duct.diag[p] += open ? weight : 2 * weight;
                 if (open) coupling[p] = weight;
             };
+            const double dy = g.height[std::size_t(space.yBegin + row)]; // the same for all rows of a channel
             face(x > 0, p - 1, g.dx, duct.west);
             face(x + 1 < g.nx, p + 1, g.dx, duct.east);
-            face(row > 0, p - std::size_t(g.nx), g.dy, duct.south);
-            face(row + 1 < space.rows, p + std::size_t(g.nx), g.dy, duct.north);
+            face(row > 0, p - std::size_t(g.nx), dy, duct.south);
+            face(row + 1 < space.rows, p + std::size_t(g.nx), dy, duct.north);
             duct.rhs[p] = 1;
         }
     std::vector<double> profile(space.kind.size(), 0.0);
@@ -47,9 +48,11 @@ StencilSystem pressureSystem(const GasSpace& space, const CellGrid& g, double me
     const double viscosity = space.air ? kViscosityAir : kViscosityHydrogen;
     const auto across = [&](std::size_t p) { return space.kind[p] == 1 ? meanProfile : space.permeability[p]; };
     const std::size_t row = std::size_t(g.nx);
+    const double* const height = g.height.data() + space.yBegin;
     for (int z = 0; z < g.nz; ++z)
         for (std::size_t s = 0; s < section; ++s) {
             const std::size_t p = s + section * std::size_t(z);
+            const double dy = height[s / row];
             if (space.kind[s] == 0) {
                 flow.diag[p] = 1;
                 continue;
@@ -60,10 +63,11 @@ StencilSystem pressureSystem(const GasSpace& space, const CellGrid& g, double me
             };
             const std::size_t x = s % row;
             if (x + 1 < row && space.kind[s + 1] != 0)
-                link(flow.east, flow.west, 1, series(across(s), across(s + 1)) / viscosity * g.dy * g.dz / g.dx);
+                link(flow.east, flow.west, 1, series(across(s), across(s + 1)) / viscosity * dy * g.dz / g.dx);
             if (s + row < section && space.kind[s + row] != 0)
-                link(flow.north, flow.south, row, series(across(s), across(s + row)) / viscosity * g.dx * g.dz / g.dy);
-            const double along = space.permeability[s] / viscosity * g.dx * g.dy / g.dz;
+                link(flow.north, flow.south, row,
+                     series(across(s) / dy, across(s + row) / height[s / row + 1]) / viscosity * g.dx * g.dz);
+            const double along = space.permeability[s] / viscosity * g.dx * dy / g.dz;
             if (z + 1 < g.nz) link(flow.up, flow.down, section, along);
             if (z == (space.air ? g.nz - 1 : 0) && space.kind[s] == 1) flow.diag[p] += 2 * along;
         }
@@ -76,17 +80,17 @@ void FuelCellSolver::setUpSpace(int which) {
     GasSpace& space = spaces_[std::size_t(which)];
     const CellGrid& g = grid_;
     space.air = which == 1;
-    space.yBegin = space.air ? g.rows[3] : 0;
-    space.rows = space.air ? g.ny - g.rows[3] : g.rows[2];
-    const int layerBegin = space.air ? 0 : g.rows[1], layerEnd = space.air ? g.rows[4] - g.rows[3] : g.rows[2];
+    space.yBegin = space.air ? g.rows[4] : 0;
+    space.rows = space.air ? g.ny - g.rows[4] : g.rows[3];
     const std::size_t section = std::size_t(g.nx * space.rows), cells = section * std::size_t(g.nz);
 
     space.kind.assign(section, 0);
     for (int row = 0; row < space.rows; ++row)
         for (int x = 0; x < g.nx; ++x) {
-            const bool layer = row >= layerBegin && row < layerEnd;
-            if (layer || (x >= g.channelBegin && x < g.channelEnd))
-                space.kind[std::size_t(x + g.nx * row)] = layer ? 2 : 1;
+            const CellRegion region = g.region(x, space.yBegin + row);
+            const bool gdl = region == CellRegion::AnodeGdl || region == CellRegion::CathodeGdl;
+            const bool channel = region == CellRegion::AnodeChannel || region == CellRegion::CathodeChannel;
+            if (region != CellRegion::Land) space.kind[std::size_t(x + g.nx * row)] = channel ? 1 : gdl ? 2 : 3;
         }
 
     space.permeability = ductProfile(space, g);
@@ -95,6 +99,7 @@ void FuelCellSolver::setUpSpace(int which) {
     for (std::size_t p = 0; p < section; ++p) {
         if (space.kind[p] == 1) sum += space.permeability[p], ++channelCells;
         if (space.kind[p] == 2) space.permeability[p] = kPermeability;
+        if (space.kind[p] == 3) space.permeability[p] = kCatalystPermeability;
     }
     const double meanProfile = sum / channelCells;
 
@@ -131,6 +136,7 @@ double FuelCellSolver::diffusion(const GasSpace& space, bool water, std::size_t 
     const double free = space.air ? (water ? kDiffusionWaterInAir : kDiffusionO2) : kDiffusionHydrogen;
     const double scaled =
         free * 101325 / settings_.outletPressure * std::pow(settings_.coolantTemperature / kReferenceTemperature, 1.75);
+    if (space.kind[section] == 3) return scaled * std::pow(kCatalystPorosity, 1.5);
     return space.kind[section] == 1 ? scaled : scaled * fibreDiffusibility(kPorosity, inPlane);
 }
 
@@ -164,7 +170,8 @@ void FuelCellSolver::solveFlow(int which) {
     const std::size_t last = space.air ? section * std::size_t(g.nz - 1) : 0;
     for (std::size_t s = 0; s < section; ++s)
         if (space.kind[s] == 1)
-            space.outlet[s] = 2 * space.permeability[s] / viscosity * g.dx * g.dy / g.dz * p[last + s];
+            space.outlet[s] = 2 * space.permeability[s] / viscosity * g.dx *
+                              g.height[std::size_t(space.yBegin) + s / row] / g.dz * p[last + s];
 }
 
 FuelCellSolver::WallRate FuelCellSolver::wallRate(int which, bool water, const std::vector<double>& c,
@@ -204,7 +211,7 @@ void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std:
     StencilSystem& a = own.system;
     const CellGrid& g = grid_;
     const std::size_t section = std::size_t(g.nx * space.rows), row = std::size_t(g.nx);
-    const double volume = g.dx * g.dy * g.dz;
+    const double* const height = g.height.data() + space.yBegin;
     std::vector<double>& c = water ? space.water : space.reactant;
     const double inletValue = water ? space.inletWater : space.inletReactant;
 
@@ -212,9 +219,11 @@ void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std:
     std::vector<double> toX(section, 0.0), toY(section, 0.0), toZ(section, 0.0);
     for (std::size_t s = 0; s < section; ++s) {
         const double inPlane = diffusion(space, water, s, true), through = diffusion(space, water, s, false);
-        if (s % row + 1 < row) toX[s] = series(inPlane, diffusion(space, water, s + 1, true)) * g.dy * g.dz / g.dx;
-        if (s + row < section) toY[s] = series(through, diffusion(space, water, s + row, false)) * g.dx * g.dz / g.dy;
-        toZ[s] = inPlane * g.dx * g.dy / g.dz;
+        const double dy = height[s / row];
+        if (s % row + 1 < row) toX[s] = series(inPlane, diffusion(space, water, s + 1, true)) * dy * g.dz / g.dx;
+        if (s + row < section)
+            toY[s] = series(through / dy, diffusion(space, water, s + row, false) / height[s / row + 1]) * g.dx * g.dz;
+        toZ[s] = inPlane * g.dx * dy / g.dz;
     }
 
     a.clear();
@@ -225,7 +234,7 @@ void FuelCellSolver::solveSpecies(int which, bool water, double rate, const std:
                 a.diag[p] = 1;
                 continue;
             }
-            const double storage = (space.kind[s] == 2 ? kPorosity : 1.0) * volume * rate;
+            const double storage = space.gasVolume(g, s) * rate;
             a.diag[p] += storage;
             a.rhs[p] += storage * before[p];
             // Upwind advection and central diffusion through the face to the next cell.

@@ -2,6 +2,7 @@
 
 #include "volume/synthetic/fuel_cell_properties.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tessera::volume::cell {
@@ -20,8 +21,11 @@ Material materialOf(CellRegion region, double gasCapacity) {
         return {kConductivityHydrogen, kConductivityHydrogen, gasCapacity};
     case CellRegion::CathodeChannel:
         return {kConductivityAir, kConductivityAir, gasCapacity};
-    case CellRegion::Mea:
-        return {kConductivityMea, kConductivityMea, kHeatCapacityMea};
+    case CellRegion::Membrane:
+        return {kConductivityMembrane, kConductivityMembrane, kHeatCapacityMembrane};
+    case CellRegion::AnodeCatalyst:
+    case CellRegion::CathodeCatalyst:
+        return {kConductivityCatalyst, kConductivityCatalyst, kHeatCapacityCatalyst};
     default:
         return {kConductivityGdlInPlane, kConductivityGdl, kHeatCapacityGdl};
     }
@@ -56,11 +60,17 @@ void FuelCellSolver::carryHeat(const GasSpace& space, double gasCapacity) {
         }
 }
 
+std::array<double, 2> FuelCellSolver::heatOf(std::size_t column, double voltage) const {
+    const double current = current_[column], all = current * (kThermalVoltage - voltage);
+    if (grid_.rows[4] == grid_.rows[5]) return {all, 0}; // no catalyst layer of its own
+    const double ohmic = std::min(current * current * (resistance_[column] - kContactResistance), all);
+    return {ohmic, all - ohmic};
+}
+
 void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<double>& before, bool refresh) {
     const CellGrid& g = grid_;
     StencilSystem& a = heat_;
     const std::size_t row = std::size_t(g.nx), plane = a.plane();
-    const double volume = g.dx * g.dy * g.dz;
     const double gasCapacity = concentration_ * kGasHeatCapacity;
     std::vector<Material> materials(plane);
     for (std::size_t s = 0; s < plane; ++s)
@@ -71,7 +81,8 @@ void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<do
         for (std::size_t s = 0; s < plane; ++s) {
             const std::size_t p = s + plane * std::size_t(z);
             const Material& m = materials[s];
-            const double storage = m.capacity * volume * rate;
+            const double dy = g.height[s / row];
+            const double storage = m.capacity * g.dx * dy * g.dz * rate;
             a.diag[p] += storage;
             a.rhs[p] += storage * before[p];
             const auto link = [&](std::vector<double>& next, std::vector<double>& back, std::size_t step, double k) {
@@ -79,13 +90,14 @@ void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<do
                 next[p] += k, back[p + step] += k;
             };
             if (s % row + 1 < row)
-                link(a.east, a.west, 1, series(m.inPlane, materials[s + 1].inPlane) * g.dy * g.dz / g.dx);
+                link(a.east, a.west, 1, series(m.inPlane, materials[s + 1].inPlane) * dy * g.dz / g.dx);
             if (s + row < plane)
-                link(a.north, a.south, row, series(m.through, materials[s + row].through) * g.dx * g.dz / g.dy);
-            if (z + 1 < g.nz) link(a.up, a.down, plane, m.inPlane * g.dx * g.dy / g.dz);
+                link(a.north, a.south, row,
+                     series(m.through / dy, materials[s + row].through / g.height[s / row + 1]) * g.dx * g.dz);
+            if (z + 1 < g.nz) link(a.up, a.down, plane, m.inPlane * g.dx * dy / g.dz);
             // Cooled plates behind the lands (and behind the floor of the channels).
             if (s < row || s + row >= plane) {
-                const double k = g.dx * g.dz / (1 / kCoolantTransfer + 0.5 * g.dy / m.through);
+                const double k = g.dx * g.dz / (1 / kCoolantTransfer + 0.5 * dy / m.through);
                 a.diag[p] += k;
                 a.rhs[p] += k * settings_.coolantTemperature;
             }
@@ -93,11 +105,13 @@ void FuelCellSolver::solveHeat(double voltage, double rate, const std::vector<do
 
     for (const GasSpace& space : spaces_) carryHeat(space, gasCapacity);
 
-    const int meaRows = g.rows[3] - g.rows[2];
     for (int z = 0; z < g.nz; ++z)
         for (int x = 0; x < g.nx; ++x) {
-            const double heat = current_[std::size_t(x + g.nx * z)] * (kThermalVoltage - voltage) * g.dx * g.dz;
-            for (int y = g.rows[2]; y < g.rows[3]; ++y) a.rhs[a.index(x, y, z)] += heat / meaRows;
+            const std::array<double, 2> heat = heatOf(std::size_t(x + g.nx * z), voltage);
+            for (const std::size_t layer : {0u, 1u}) {
+                const int begin = g.rows[3 + layer], end = g.rows[4 + layer];
+                for (int y = begin; y < end; ++y) a.rhs[a.index(x, y, z)] += heat[layer] * g.dx * g.dz / (end - begin);
+            }
         }
     // The largest factorisation. The flow changes it little, so it is only computed again for another time step.
     if (refresh || heatPreconditioner_.empty()) heatPreconditioner_ = PlanePreconditioner(a);

@@ -7,14 +7,17 @@ inline constexpr double kFaraday = 96485.33212;         // C/mol
 inline constexpr double kGas = 8.314462618;             // J/(mol K)
 inline constexpr double kReferenceTemperature = 353.15; // K, of the transport properties
 
-// Geometry. The layers are whole cells of a uniform grid: at 13 samples through the plane a cell is 100 um, so that the
-// gas-diffusion layers take two, the membrane-electrode assembly one and the channels four.
+// Geometry.
 inline constexpr double kLength = 40e-3;         // m, along the flow
 inline constexpr double kLandWidth = 0.6e-3;     // m, each side (half a rib)
 inline constexpr double kChannelWidth = 1.0e-3;  // m
 inline constexpr double kChannelHeight = 0.4e-3; // m
 inline constexpr double kGdlThickness = 0.2e-3;  // m, e.g. compressed carbon paper
-inline constexpr double kMeaThickness = 0.1e-3;  // m, membrane and both catalyst layers
+inline constexpr double kCatalystThickness = 10e-6;
+inline constexpr double kMembraneThickness = 51e-6; // m, Nafion 212
+/// Of the even cell, membrane and both catalyst layers: at 13 samples through the plane a cell is 100 um, so that the
+/// gas-diffusion layers take two, this one, and the channels four.
+inline constexpr double kMeaThickness = 0.1e-3;
 
 /// Gas-diffusion layer (carbon paper). Porosity and permeability: Gostick et al., J. Power Sources 162 (2006) 228.
 inline constexpr double kPorosity = 0.7;
@@ -22,6 +25,9 @@ inline constexpr double kPermeability = 5e-12; // m2
 /// D_eff / D of random fibres across and along the sheet: Tomadakis and Sotirchos, AIChE J. 39 (1993) 397,
 /// porosity ((porosity - 0.11) / 0.89)^a with a = 0.785 through the plane and 0.521 in it.
 double fibreDiffusibility(double porosity, bool inPlane);
+/// Catalyst layers: D_eff / D is porosity^1.5 (Bruggeman); porosity and permeability are assumed.
+inline constexpr double kCatalystPorosity = 0.4;
+inline constexpr double kCatalystPermeability = 1e-13; // m2
 
 /// Binary diffusion coefficients (m2/s at 1 atm) from the tables of Cussler, Diffusion (3rd ed.), chapter 5, carried to
 /// 353 K with T^1.75 (Fuller et al., Ind. Eng. Chem. 58 (1966) 18).
@@ -50,9 +56,8 @@ double protonConductivity(double waterContent, double temperature);
 double membraneWaterDiffusion(double waterContent, double temperature);
 /// Water molecules dragged per proton, 2.5 content / 22: Springer et al. 1991, eq. 19.
 double dragCoefficient(double waterContent);
-inline constexpr double kMembraneThickness = 51e-6; // m, Nafion 212
-inline constexpr double kSulfonicDensity = 1800;    // mol/m3, dry density 1980 kg/m3 over 1.1 kg/mol
-inline constexpr double kContactResistance = 5e-6;  // Ohm m2 (50 mOhm cm2), both plates and layers together
+inline constexpr double kSulfonicDensity = 1800;   // mol/m3, dry density 1980 kg/m3 over 1.1 kg/mol
+inline constexpr double kContactResistance = 5e-6; // Ohm m2 (50 mOhm cm2), both plates and layers together
 
 /// Oxygen reduction on Pt: exchange current 2.47e-8 A per cm2 Pt at 353 K and 101.3 kPa O2, order 0.54 at constant
 /// overpotential, 67 kJ/mol, one transferred charge in the Tafel slope. Neyerlin, Gu, Jorne, Gasteiger, J. Electrochem.
@@ -85,7 +90,8 @@ inline constexpr double kThermalVoltage = 1.253;
 /// (2011) 3565 in it; Khandelwal and Mench, J. Power Sources 161 (2006) 1106 for Nafion.
 inline constexpr double kConductivityLand = 20, kHeatCapacityLand = 1.6e6;
 inline constexpr double kConductivityGdl = 0.4, kConductivityGdlInPlane = 10, kHeatCapacityGdl = 0.5e6;
-inline constexpr double kConductivityMea = 0.2, kHeatCapacityMea = 2e6;
+inline constexpr double kConductivityMembrane = 0.2, kHeatCapacityMembrane = 2e6;
+inline constexpr double kConductivityCatalyst = 0.27, kHeatCapacityCatalyst = 1.5e6;
 inline constexpr double kCoolantTransfer = 8e3; // W/(m2 K), plate behind the lands and coolant
 
 } // namespace tessera::volume::cell

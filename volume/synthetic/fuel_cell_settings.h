@@ -8,9 +8,11 @@ namespace tessera::volume {
 
 /// Settings of the built-in fuel cell: a straight channel of a low-temperature PEM cell (353 K, one gas phase),
 /// hydrogen and air in counter-flow. x lateral, y through-plane (anode below, cathode above), z along the air flow.
+/// Each layer through the plane has cells of its own height, unless `even`.
 /// docs/fuel-cell-model.md has the equations and the source of every number.
 struct FuelCellSettings {
     int nx = 11, ny = 13, nz = 101;
+    bool even = false;
     int times = 24;
     double interval = 0.03;
     double stepTime = 0.15;
@@ -32,6 +34,10 @@ struct FuelCellSettings {
         visit(self.nx, {.key = "nx", .doc = "Samples across the channel", .range = Range{3, 250}});
         visit(self.ny, {.key = "ny", .doc = "Samples through the layers", .range = Range{5, 250}});
         visit(self.nz, {.key = "nz", .doc = "Samples along the flow", .range = Range{4, 1000}});
+        visit(self.even, {.key = "even",
+                          .doc = "1: cells of one height, so that the membrane and both catalyst layers are one layer "
+                                 "of 100 um",
+                          .range = Range{0, 1}});
         visit(self.times, {.key = "times", .doc = "Number of times stored", .range = Range{1, 10000}});
         visit(self.interval,
               {.key = "interval", .doc = "Time between two stored times", .unit = "s", .range = Range{1e-5, 1e4}});
@@ -82,6 +88,15 @@ struct FuelCellSettings {
 };
 
 /// Values of the labels of "region".
-enum class CellRegion : std::uint8_t { Land, AnodeChannel, AnodeGdl, Mea, CathodeGdl, CathodeChannel };
+enum class CellRegion : std::uint8_t {
+    Land,
+    AnodeChannel,
+    AnodeGdl,
+    Membrane, ///< of the even cell with both catalyst layers
+    CathodeGdl,
+    CathodeChannel,
+    AnodeCatalyst,
+    CathodeCatalyst
+};
 
 } // namespace tessera::volume

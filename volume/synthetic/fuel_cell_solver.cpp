@@ -10,7 +10,7 @@
 namespace tessera::volume::cell {
 
 FuelCellSolver::FuelCellSolver(const FuelCellSettings& settings)
-    : settings_(settings), grid_(settings.nx, settings.ny, settings.nz),
+    : settings_(settings), grid_(settings),
       concentration_(settings.outletPressure / (kGas * settings.coolantTemperature)) {
     const std::size_t columns = std::size_t(grid_.nx * grid_.nz);
     heat_ = StencilSystem(grid_.nx, grid_.ny, grid_.nz);
@@ -26,7 +26,8 @@ void FuelCellSolver::updateCurrent(double voltage) {
     const CellGrid& g = grid_;
     const GasSpace &fuel = spaces_[0], &air = spaces_[1];
     const auto half = [&](const GasSpace& space, bool water) { // m/s from the cell next to the catalyst to it
-        return diffusion(space, water, std::size_t(g.nx * space.wallRow()), false) / (0.5 * g.dy);
+        const double distance = 0.5 * g.height[std::size_t(space.yBegin + space.wallRow())];
+        return diffusion(space, water, std::size_t(g.nx * space.wallRow()), false) / distance;
     };
     const double oxygenHalf = half(air, false), airWaterHalf = half(air, true), fuelWaterHalf = half(fuel, true);
     parallelFor(
@@ -38,8 +39,8 @@ void FuelCellSolver::updateCurrent(double voltage) {
                     return std::size_t(x + g.nx * space.wallRow()) + std::size_t(g.nx * space.rows) * z;
                 };
                 double mea = 0;
-                for (int y = g.rows[2]; y < g.rows[3]; ++y) mea += temperature_[heat_.index(x, y, int(z))];
-                mea /= g.rows[3] - g.rows[2];
+                for (int y = g.rows[3]; y < g.rows[4]; ++y) mea += temperature_[heat_.index(x, y, int(z))];
+                mea /= g.rows[4] - g.rows[3];
 
                 // Water content of the membrane from the activities at the catalysts on either side.
                 const double saturated = saturationPressure(mea) / (kGas * mea); // mol/m3
@@ -96,13 +97,12 @@ bool FuelCellSolver::advance(double rate, double voltage, int maxIterations, dou
         converged = change <= tolerance * scale;
     }
     heatRate_ = rate;
-    const double volume = grid_.dx * grid_.dy * grid_.dz;
     for (std::size_t which : {0u, 1u}) {
         const GasSpace& space = spaces_[which];
         const std::size_t section = space.kind.size();
         stored_[which] = {};
         for (std::size_t p = 0; p < space.reactant.size(); ++p) {
-            const double gas = (space.kind[p % section] == 2 ? kPorosity : 1.0) * volume * rate;
+            const double gas = space.gasVolume(grid_, p % section) * rate;
             stored_[which].reactantStored += gas * (space.reactant[p] - gasBefore[2 * which][p]);
             stored_[which].waterStored += gas * (space.water[p] - gasBefore[2 * which + 1][p]);
         }

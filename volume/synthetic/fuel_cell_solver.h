@@ -10,35 +10,47 @@
 
 /// The equations of the built-in fuel cell on a box of finite volumes, one per sample.
 ///
-///      y ^   +----+--------+----+   cathode channel (air flows to +z)
-///        |   |land|        |land|
-///        |   +----+--------+----+   cathode gas-diffusion layer
-///        |   +------------------+   membrane-electrode assembly
-///        |   +----+--------+----+   anode gas-diffusion layer
-///        |   |land|        |land|
-///        |   +----+--------+----+   anode channel (hydrogen flows to -z)
+///      y ^   +----+--------+----+
+///        |   |land|        |land|   cathode channel (air flows to +z)
+///        |   +----+--------+----+
+///        |   |                  |   cathode gas-diffusion layer
+///        |   +------------------+   cathode catalyst layer
+///        |   +------------------+   membrane
+///        |   +------------------+   anode catalyst layer
+///        |   |                  |   anode gas-diffusion layer
+///        |   +----+--------+----+
+///        |   |land|        |land|   anode channel (hydrogen flows to -z)
+///        |   +----+--------+----+
 ///        +-----------------------> x
 namespace tessera::volume::cell {
 
-/// Which cells belong to what: columns across x and rows through y, each at least one cell.
+/// Which cells belong to what: columns across x and rows through y.
 struct CellGrid {
     int nx = 0, ny = 0, nz = 0;
-    double dx = 0, dy = 0, dz = 0;        ///< m
+    double dx = 0, dz = 0;                ///< m
+    std::vector<double> height;           ///< of each row, m
     int channelBegin = 0, channelEnd = 0; ///< columns of the channels
-    std::array<int, 6> rows{}; ///< first row of: anode channel, anode GDL, MEA, cathode GDL, cathode channel; ny
+    /// First row of: anode channel, GDL and catalyst layer; membrane; cathode catalyst layer, GDL and channel; then ny.
+    /// Of an even cell the catalyst layers have no rows of their own.
+    std::array<int, 8> rows{};
 
     CellGrid() = default;
-    CellGrid(int cellsX, int cellsY, int cellsZ);
+    /// Each layer gets at least one row. Throws Error if there are fewer rows than layers.
+    explicit CellGrid(const FuelCellSettings& settings);
     CellRegion region(int x, int y) const;
+    /// The planes between the rows, m; one more than rows.
+    std::vector<double> planes() const;
+    /// The middle of each row, m.
+    std::vector<double> middles() const;
 };
 
-/// One gas space: channel and gas-diffusion layer of one electrode, `rows` rows from `yBegin`. Arrays of cells are
-/// nx * rows * nz, x fastest; of columns nx * nz; of a cross-section nx * rows.
+/// One gas space: channel, gas-diffusion layer and catalyst layer of one electrode, `rows` rows from `yBegin`. Arrays
+/// of cells are nx * rows * nz, x fastest; of columns nx * nz; of a cross-section nx * rows.
 struct GasSpace {
     bool air = false; ///< else hydrogen
     int yBegin = 0, rows = 0;
-    std::vector<std::uint8_t> kind;           ///< cross-section: 0 land, 1 channel, 2 gas-diffusion layer
-    std::vector<double> permeability;         ///< cross-section, m2: of the layer, or duct profile of the channel
+    std::vector<std::uint8_t> kind;   ///< cross-section: 0 land, 1 channel, 2 gas-diffusion layer, 3 catalyst layer
+    std::vector<double> permeability; ///< cross-section, m2: of the layer, or duct profile of the channel
     double inletReactant = 0, inletWater = 0; ///< mol/m3
     std::vector<double> pressure;             ///< cells, Pa above the outlet
     std::vector<double> reactant, water;      ///< cells, mol/m3: O2 or H2, and H2O
@@ -47,8 +59,10 @@ struct GasSpace {
     std::vector<double> inlet, outlet; ///< cross-section, volume fluxes into and out of the gas space
     std::vector<double> wall;          ///< columns, volume flux from the catalyst into the gas space
 
-    /// The row next to the catalyst.
+    /// The row next to the membrane, at whose far face the reaction is.
     int wallRow() const { return air ? 0 : rows - 1; }
+    /// Volume (m3) of gas in a cell of the cross-section.
+    double gasVolume(const CellGrid& grid, std::size_t section) const;
     /// The sum of volume fluxes out of a cell; 0 but for the tolerance of the pressure solver.
     double divergence(const CellGrid& grid, int x, int row, int z) const;
     /// Velocity (m/s) at the centre of a cell: means of its faces.
@@ -107,6 +121,8 @@ private:
     void carryHeat(const GasSpace& space, double gasCapacity);
     void solveHeat(double voltage, double rate, const std::vector<double>& before, bool refresh);
     double diffusion(const GasSpace& space, bool water, std::size_t section, bool inPlane) const;
+    /// Heat made in a column (W/m2), in the membrane and in the cathode's catalyst layer.
+    std::array<double, 2> heatOf(std::size_t column, double voltage) const;
 
     FuelCellSettings settings_;
     CellGrid grid_;

@@ -1,5 +1,6 @@
 #include "volume/synthetic/planted.h"
 
+#include "volume/base/error.h"
 #include "volume/base/parallel.h"
 #include "volume/synthetic/fuel_cell.h"
 
@@ -41,7 +42,10 @@ double changed(const std::string& name, glm::dvec3 at, double time, double value
 } // namespace
 } // namespace planted
 
-Dataset makePlanted(const std::map<std::string, double>& settings, const Progress& progress) {
+Dataset makePlanted(const std::map<std::string, double>& given, const Progress& progress) {
+    std::map<std::string, double> settings = given;
+    settings.insert({"even", 1}); // the places of the events are in this cell
+    if (settings.at("even") != 1) throw Error("the events have their places in the even cell", "planted", "even");
     Dataset dataset = makeFuelCell(settings, progress.part(0, 0.9));
     dataset.info.name = "planted";
     dataset.info.provenance += "; with planted events";

@@ -23,7 +23,7 @@ struct GenerateRequest {
     std::string model, output, size;
     std::optional<int> times;
     std::vector<std::string> settings;
-    bool list = false;
+    bool even = false, list = false;
     codec::PackOptions options;
 };
 
@@ -52,6 +52,7 @@ std::map<std::string, double> modelSettings(const GenerateRequest& request) {
         }
     }
     if (request.times) settings["times"] = *request.times;
+    if (request.even) settings["even"] = 1;
     for (const std::string& setting : request.settings) {
         const std::size_t equals = setting.find('=');
         const auto value = equals == std::string::npos ? std::nullopt : wholeNumber(setting.substr(equals + 1));
@@ -127,6 +128,7 @@ void addGenerateCommand(CLI::App& app) {
         command->add_option("-o,--output", request->output, "File to write: .tsr, .vti or .vtr (.pvd), .raw or .nrrd");
     command->add_option("--size", request->size, "Samples, e.g. 11x13x101")->type_name("NXxNYxNZ");
     command->add_option("--times", request->times, "Number of times");
+    command->add_flag("--even", request->even, "fuel-cell: cells of one height, as in versions before (--set even=1)");
     command->add_option("--set", request->settings, "A setting of the model")->type_name("KEY=NUMBER");
     command->add_flag("--list", request->list, "Show the settings of the model instead")->excludes(output);
     addDescribed(*command, request->options);
