@@ -83,16 +83,15 @@ TEST(SelectionText, DefinitionsStateWhatIsMeantWithUnits) {
     const auto notes = selectionNotes(session, info);
     ASSERT_EQ(notes.size(), 3u);
     EXPECT_EQ(notes[0], "selection \"starved or ball\"");
-    EXPECT_EQ(
-        notes[2],
-        "brush \"ball\": sphere 8 \u00d7 10 \u00d7 12 mm around x 1, y 2, z 3 mm (soft edge 10.0 % of the radius)");
+    EXPECT_EQ(notes[2],
+              "brush \"ball\": sphere 8 \u00d7 10 \u00d7 12 mm around x 1, y 2, z 3 mm (soft edge 10 % of the radius)");
 }
 
 TEST(SelectionText, SamplesThatAreNotWholeAreCalledWeighted) {
     TableColumn samples{.name = "samples", .head = "Samples", .kind = NumberKind::Count, .numbers = {3, 4}};
     sayWeighted(samples);
     EXPECT_EQ(samples.name, "samples");
-    samples.numbers[1] = 4.25;
+    samples.numbers[1] = 4.26;
     sayWeighted(samples);
     EXPECT_EQ(samples.name, "weightedSamples");
     EXPECT_EQ(headOf(samples), "Weighted samples");
