@@ -57,7 +57,6 @@ void drawProbesView(ViewContext& context, const std::string& pane, ProbesView& v
             return readProbes(*source, asked);
         },
         [](const std::vector<Probe>&, const std::vector<Probe>&) { return true; });
-    if (session.probes.empty()) return drawHint("No probes", "Press P to keep the values at the cross-hair.");
     if (!values) {
         const std::string failure = cache.answers.failure();
         return failure.empty() ? ImGui::TextDisabled("Reading...") : drawHint("No values", failure.c_str());
@@ -68,6 +67,7 @@ void drawProbesView(ViewContext& context, const std::string& pane, ProbesView& v
                 .figure = [table](const PageForm& form, const Progress&) { return tablePage(*table, form); },
                 .table = [table](const Progress&) { return *table; }},
                false);
+    if (session.probes.empty()) return drawHint("No probes", "Press P to keep the values at the cross-hair.");
     const std::size_t here = probeHere(session);
     const auto look = [&](std::size_t row) -> TableRowLook {
         return {.selected = row == here, .tip = "Click: the cross-hair and the time go there"};
