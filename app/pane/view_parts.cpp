@@ -6,6 +6,7 @@
 #include "app/ui/fitted_text.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
 #include "volume/flow/flow_channels.h"
 
 #include <algorithm>
@@ -103,7 +104,7 @@ bool linkRight(const std::string& id, const std::string& text, const std::string
     const float room = ImGui::GetContentRegionAvail().x - size.x;
     if (room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const bool clicked = ImGui::InvisibleButton(id.c_str(), {std::max(size.x, 1.0f), std::max(size.y, 1.0f)});
+    const bool clicked = mouseArea(id.c_str(), size);
     const ImU32 color = ImGui::GetColorU32(faint ? ImGuiCol_TextDisabled : ImGuiCol_Text);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.AddText(at, color, text.c_str());

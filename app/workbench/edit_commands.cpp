@@ -5,7 +5,6 @@
 #include "app/ui/keys.h"
 #include "app/views/data/derived_list.h"
 #include "app/workbench/fit_box.h"
-#include "app/workbench/go_to.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 #include "volume/base/error.h"

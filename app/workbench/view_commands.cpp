@@ -110,16 +110,14 @@ void saveSelection(Workbench& workbench) {
 }
 
 void addExportCommand(std::vector<Command>& commands, Workbench& workbench) {
-    commands.push_back({.menu = "",
-                        .name = "Save the selection as a table...",
-                        .help = "Save the statistics of what is brushed and of the rest, with its name and definition, "
-                                "as CSV",
-                        .words = "export csv brush region numbers statistics",
-                        .run = [&workbench] { saveSelection(workbench); },
-                        .enabled =
-                            [&workbench] {
-                                return workbench.document().loaded() && workbench.session().selection.active();
-                            }});
+    commands.push_back(
+        {.menu = "",
+         .name = "Save the selection as a table...",
+         .help = "Save the statistics of what is brushed and of the rest, with its name and definition, "
+                 "as CSV",
+         .words = "export csv brush region numbers statistics",
+         .run = [&workbench] { saveSelection(workbench); },
+         .enabled = [&workbench] { return workbench.document().loaded() && workbench.session().selection.active(); }});
     commands.push_back({.menu = "",
                         .name = "Export table...",
                         .help = "Save the numbers of the pane under the mouse, or of the one clicked last, as CSV",

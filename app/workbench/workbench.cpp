@@ -1,7 +1,6 @@
 #include "app/workbench/workbench.h"
 
 #include "app/workbench/fit_box.h"
-#include "app/workbench/go_to.h"
 #include "app/workbench/status_bar.h"
 #include "app/workbench/workbench_commands.h"
 #include "codec/remote/address.h"

@@ -1,6 +1,6 @@
 #include "app/session/own_functions.h"
 #include "app/ui/ticks.h"
-#include "app/workbench/go_to.h"
+#include "app/workbench/workbench_commands.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/hands_fixture.h"
 

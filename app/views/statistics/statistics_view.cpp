@@ -144,6 +144,20 @@ TableLook goingToExtremes(ViewContext& context, std::function<ExtremeQuestion(st
                 }};
 }
 
+/// The table of what is selected and of the rest, or of all samples.
+void drawPartsTable(ViewContext& context, const volume::DatasetInfo& info, const StatisticsResult& numbers,
+                    const TableForm& form) {
+    const std::size_t parts = numbers.brushed ? 2 : 1;
+    const TableLook look = goingToExtremes(context, [&](std::size_t row) {
+        const int channel = numbers.query.channels[row / parts];
+        return ExtremeQuestion{.channel = info.channel(channel).name,
+                               .of = parts == 1         ? ExtremeOf::All
+                                     : row % parts == 0 ? ExtremeOf::Selected
+                                                        : ExtremeOf::Rest};
+    });
+    drawTable("statistics", statisticsTable(info, numbers, form), look);
+}
+
 /// The table of every region, of all samples or of those `selected`.
 void drawRegionTable(ViewContext& context, const volume::Parameter& label, const std::vector<RegionRow>& rows,
                      const Table& table, bool selected) {
@@ -340,15 +354,7 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
                          {std::min(with, numbers.query.channels.size() - 1)},
                          false,
                          selected};
-    const std::size_t parts = numbers.brushed ? 2 : 1;
-    const TableLook look = goingToExtremes(context, [&](std::size_t row) {
-        const int channel = numbers.query.channels[row / parts];
-        return ExtremeQuestion{.channel = info.channel(channel).name,
-                               .of = parts == 1         ? ExtremeOf::All
-                                     : row % parts == 0 ? ExtremeOf::Selected
-                                                        : ExtremeOf::Rest};
-    });
-    drawTable("statistics", statisticsTable(info, numbers, form), look);
+    drawPartsTable(context, info, numbers, form);
 }
 
 } // namespace tessera::app

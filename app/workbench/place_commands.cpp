@@ -1,13 +1,13 @@
-#include "app/workbench/go_to.h"
-
 #include "app/pane/view_parts.h"
 #include "app/queries/probe_values.h"
 #include "app/session/shown_scene.h"
 #include "app/values/selection_text.h"
 #include "app/workbench/workbench.h"
+#include "app/workbench/workbench_commands.h"
 
 #include <memory>
 
+/// The cross-hair goes to places that are named by what is there, and places are kept.
 namespace tessera::app {
 
 namespace {
