@@ -130,7 +130,7 @@ void fitSurfaces(Session& session, const volume::BrickSource& source, const Sess
     const auto fit = [&](vis::Layer& layer, const vis::Layer* former, int time) {
         auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
         const auto channel = iso ? info.findChannel(iso->channel) : std::nullopt;
-        if (!channel) return;
+        if (!channel || info.parameters[std::size_t(info.channel(*channel).parameter)].categorical) return;
         try {
             const std::optional<Range> range = rangeAt(source, *channel, time);
             if (!range || !(range->hi > range->lo)) {
@@ -167,6 +167,7 @@ Session changeLayout(const SessionDocument& layout, const volume::BrickSource& s
     next.appearance = shown.appearance;
     next.time = shown.time;
     next.cursor = shown.cursor;
+    next.probes = shown.probes;
     keepOwnBrushes(next, shown, messages);
     const auto refit = [&](vis::Camera& camera) {
         vis::fit(camera, vis::worldFrame(source.info(), next.stretch), firstAspect(source.info()));

@@ -2,6 +2,7 @@
 
 #include "app/data/boundary_value.h"
 #include "app/data/coarse_samples.h"
+#include "app/edits/region_surface.h"
 #include "codec/archive/archive.h"
 #include "codec/remote/address.h"
 #include "vis/transfer/tail_opacity.h"
@@ -189,7 +190,10 @@ void aimLayer(Session& session, const volume::BrickSource& source, vis::Layer& l
     const bool quick = isQuick(session, source);
     if (std::holds_alternative<vis::VolumeLayer>(layer.technique)) {
         if (quick && layer.transfer.empty()) aimFunction(session, source, name);
-    } else if (auto* const iso = std::get_if<vis::IsoLayer>(&layer.technique)) {
+    } else if (auto* const iso = std::get_if<vis::IsoLayer>(&layer.technique);
+               iso && info.parameters[std::size_t(info.channel(*channel).parameter)].categorical) {
+        aimAtRegion(*iso, info.parameters[std::size_t(info.channel(*channel).parameter)]);
+    } else if (iso) {
         const Range range = info.channelRange(info.channel(*channel));
         const bool outside = double(iso->value) < range.lo || double(iso->value) > range.hi;
         std::optional<double> value;

@@ -46,15 +46,6 @@ std::optional<FunctionOfLayer> functionOfLayer(const Session& session, const vol
     return FunctionOfLayer{of.transfer.empty() ? name : of.transfer, *channel};
 }
 
-std::size_t selectedLayer(const Session& session) {
-    for (const auto& [pane, view] : session.views)
-        if (const auto* layers = std::get_if<LayersView>(&view)) {
-            const auto chosen = std::size_t(std::max(layers->selected, 0));
-            return chosen < session.layers.size() ? chosen : 0;
-        }
-    return 0;
-}
-
 const vis::TransferRecipe& recipeNamed(const std::string& name, std::span<const vis::TransferRecipe> own) {
     std::string known;
     for (const auto& list : {own, vis::transferLibrary()})

@@ -25,9 +25,6 @@ struct FunctionOfLayer {
 std::optional<FunctionOfLayer> functionOfLayer(const Session& session, const volume::DatasetInfo& info,
                                                std::size_t layer);
 
-/// The layer selected in the first list of layers, else the first.
-std::size_t selectedLayer(const Session& session);
-
 /// The recipe of that name (vis::sameName), among one's own first. Throws Error that lists all names.
 const vis::TransferRecipe& recipeNamed(const std::string& name, std::span<const vis::TransferRecipe> own);
 

@@ -53,7 +53,8 @@ std::string partWord(std::string_view part) {
         {"stretch", "proportions"}, {"render", "quality"},    {"appearance", "look of the window"},
         {"lighting", "light"},      {"clips", "clipping"},    {"tone", "tone curve"},
         {"animation", "animation"}, {"cursor", "cross-hair"}, {"views", "views"},
-        {"layers", "layers"},       {"lenses", "lenses"},     {"paper", "paper"}};
+        {"layers", "layers"},       {"lenses", "lenses"},     {"paper", "paper"},
+        {"probes", "probes"}};
     for (const auto& [key, word] : kWords)
         if (part == key) return std::string(word);
     return {};
@@ -77,6 +78,8 @@ NamedThing thingAt(const Session& session, const std::vector<std::string>& path)
         if (const auto* layer = at(1, session.layers)) return {layerName(*layer), 2};
     } else if (first == "lenses") {
         if (const auto* lens = at(1, session.lenses)) return {named("lens", lens->name), 2};
+    } else if (first == "probes") {
+        if (const auto* probe = at(1, session.probes)) return {named("probe", probe->name), 2};
     } else if (first == "selection" && path.size() > 1 && path[1] == "brushes") {
         if (const auto* brush = at(2, session.selection.brushes)) return {named("brush", brush->name), 3};
         return {"brushes", 2};

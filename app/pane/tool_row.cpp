@@ -3,6 +3,7 @@
 #include "app/drawing/drawing.h"
 #include "app/pane/controls.h"
 #include "app/ui/time_text.h"
+#include "app/values/selection_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,18 +87,26 @@ void exportMenu(ViewContext& context, ToolRow& tools, ViewExport asked, bool atO
         if (!context.numbers) return asked;
         const volume::DatasetInfo& info = context.numbers->info();
         std::string origin = numbers.empty() ? originText(context.origin, info) : numbers;
-        if (atOneTime && info.times.size() > 1) origin += ", at " + timeText(info, context.session.time);
+        if (atOneTime && info.times.size() > 1) {
+            const std::string quantities = quantitiesText(info, context.session.time, context.session.data.axis);
+            origin +=
+                ", at " + timeText(info, context.session.time) + (quantities.empty() ? "" : " (" + quantities + ")");
+        }
+        std::vector<std::string> notes;
+        if (asked.brushed) notes = selectionNotes(context.session, info);
         ViewExport made = asked;
         if (asked.table)
-            made.table = [table = asked.table, origin](const Progress& progress) {
+            made.table = [table = asked.table, origin, notes](const Progress& progress) {
                 Table own = table(progress);
+                own.notes.insert(own.notes.begin(), notes.begin(), notes.end());
                 own.notes.insert(own.notes.begin(), "numbers: " + origin);
                 return own;
             };
         if (asked.figure)
-            made.figure = [figure = asked.figure, origin](const PageForm& form, const Progress& progress) {
+            made.figure = [figure = asked.figure, origin, notes](const PageForm& form, const Progress& progress) {
                 VectorPage drawing = figure(form, progress);
                 drawing.numbers = origin;
+                for (const std::string& note : notes) drawing.numbers += "; " + note;
                 return drawing;
             };
         return made;

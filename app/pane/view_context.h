@@ -33,12 +33,15 @@ struct ViewCache {
     virtual bool shared() const { return false; }
 };
 
+struct ExtremeQuestion; // app/queries/extreme_query.h: a value of which the place is looked for
+
 /// What a view can be exported as beside its picture; each may be empty.
 struct ViewExport {
     std::string name; ///< of a file, without ending
     std::function<VectorPage(const PageForm&, const Progress&)> figure = {};
     bool whole = true; ///< the figure has all that the pane shows; else pages of the view are drawn as the pane is
     std::function<Table(const Progress&)> table = {}; ///< its first note says where its numbers come from
+    bool brushed = false; ///< numbers are of what is selected, too: files state how that is defined
 };
 
 /// What a view says in one frame.
@@ -97,6 +100,8 @@ struct ViewContext {
     bool idle = true;              ///< every view was finished in the last frame: time for work that can wait
     /// Asks the workbench to run a command of its table, by name, after this frame; null in tests.
     std::function<void(const std::string& command)> runCommand = {};
+    /// Moves the cross-hair to the least or greatest value of a parameter, once that is found; null in tests.
+    std::function<void(const ExtremeQuestion&)> goTo = {};
     /// Asks where to save, then writes what `make` returns, in the background; null in tests.
     std::function<void(const std::string& fileName, std::function<std::string(const Progress&)> make)> exportText = {};
     /// The same for a figure, with the session as it is then inside its file.

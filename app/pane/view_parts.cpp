@@ -6,6 +6,8 @@
 #include "app/ui/fitted_text.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
+#include "volume/flow/flow_channels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -97,6 +99,23 @@ void tableHeader(const std::vector<std::string>& names, int right) {
     }
 }
 
+bool linkRight(const std::string& id, const std::string& text, const std::string& tip, bool faint) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const float room = ImGui::GetContentRegionAvail().x - size.x;
+    if (room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool clicked = mouseArea(id.c_str(), size);
+    const ImU32 color = ImGui::GetColorU32(faint ? ImGuiCol_TextDisabled : ImGuiCol_Text);
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    draw.AddText(at, color, text.c_str());
+    if (ImGui::IsItemHovered()) {
+        draw.AddLine({at.x, at.y + size.y}, {at.x + size.x, at.y + size.y}, color);
+        ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+        tooltip(tip.c_str());
+    }
+    return clicked;
+}
+
 void textRight(const std::string& text, bool faint) {
     const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
     if (room > 0) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + room);
@@ -159,6 +178,8 @@ std::string layerTitle(const vis::Layer& layer, const volume::DatasetInfo& info)
     const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
     const auto channel = surface && layer.name.empty() ? info.findChannel(surface->channel) : std::nullopt;
     if (!channel) return name;
+    const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(*channel).parameter)];
+    if (parameter.categorical) return volume::labelName(parameter, int(std::lround(surface->value))) + " surface";
     char rounded[32]; // four digits without zeros at the end
     std::snprintf(rounded, sizeof rounded, "%.4g", surface->value);
     return name + " " + formatQuantity(std::strtod(rounded, nullptr), info.channel(*channel).unit);

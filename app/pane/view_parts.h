@@ -39,6 +39,8 @@ void tableHeader(const std::vector<std::string>& names, int right = 1);
 void tableHeader(std::initializer_list<const char*> names, int right = 1);
 /// Text at the right edge of a table cell.
 void textRight(const std::string& text, bool faint = false);
+/// The same as something to click, underlined below the mouse, where `tip` says what happens; true if it was clicked.
+bool linkRight(const std::string& id, const std::string& text, const std::string& tip, bool faint = false);
 
 /// Indices into info.channels() of what statistics compare: scalars and vector magnitudes, no labels.
 std::vector<int> comparedChannels(const volume::DatasetInfo& info);

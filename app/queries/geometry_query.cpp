@@ -3,9 +3,12 @@
 #include "app/pane/view_parts.h"
 #include "vis/shapes/flow_geometry.h"
 #include "volume/bricks/source_at_time.h"
+#include "volume/flow/flow_channels.h"
 #include "volume/mesh/isosurface.h"
+#include "volume/mesh/region_surface.h"
 #include "volume/sources/sheet_source.h"
 
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -55,8 +58,11 @@ SharedGeometry make(const SurfaceQuery& query, const SharedSource& source, int l
     const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
     auto geometry = std::make_shared<vis::Geometry>();
     const double share = query.colorBy < 0 ? 1 : 0.6;
-    geometry->mesh = volume::extractIsosurface(*shown.source, query.channel, shown.time, query.value, level,
-                                               progress.part(0, share));
+    geometry->mesh = volume::parameterOf(source->info(), query.channel).categorical
+                         ? volume::extractRegionSurface(*shown.source, query.channel, shown.time,
+                                                        int(std::lround(query.value)), level, progress.part(0, share))
+                         : volume::extractIsosurface(*shown.source, query.channel, shown.time, query.value, level,
+                                                     progress.part(0, share));
     if (query.colorBy >= 0)
         volume::sampleAtVertices(geometry->mesh, *shown.source, query.colorBy, shown.time, level,
                                  progress.part(share, 1));

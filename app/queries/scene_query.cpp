@@ -3,6 +3,7 @@
 #include "app/pane/axis_label.h"
 #include "app/pane/oblique_plane.h"
 #include "app/pane/view_parts.h"
+#include "app/queries/focus_layers.h"
 
 namespace tessera::app {
 
@@ -25,6 +26,7 @@ void addObliqueSlices(vis::Scene& scene, const Session& session, const volume::D
 
 vis::Scene AsyncScene::get(ViewContext& context, const std::string& pane, bool moving) {
     vis::Scene scene = sceneWithLimits(context);
+    addFocusLayers(scene, context.source->info());
     addObliqueSlices(scene, context.session, context.source->info());
     scene.geometry = geometry_.get(context, pane, moving);
     return scene;

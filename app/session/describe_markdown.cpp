@@ -89,6 +89,7 @@ std::string parameterReference() {
         "The units `length` and `time` are those that the data state.\n\n";
     out += markdownSection<Session>("Session", "The whole session; the sections below list its parts.");
     out += markdownSection<DataFile>("data.files", "A file of the data set.");
+    out += markdownSection<Probe>("probes", "A place and time whose values are kept in a list.");
     out +=
         markdownSection<vis::Layer>("layers", "A layer of the 3D views; `technique` is one of the four types below.");
     out += markdownSection<vis::VolumeLayer>("Layer of type `volume`", "A scalar drawn with its transfer function.");

@@ -46,10 +46,38 @@ void removeUnused(Session& session, const std::vector<OwnFunction>& before, cons
     }
 }
 
+void dropFormerFunction(Session& session, vis::Layer& layer, const std::vector<OwnFunction>& before,
+                        const volume::DatasetInfo& info) {
+    const auto own = std::ranges::find(before, layer.transfer, &OwnFunction::name);
+    if (own == before.end() || own->channel == channelOfFunction(layer.technique)) return;
+    layer.transfer.clear();
+    removeUnused(session, before, info);
+}
+
 const std::string& channelOfFunction(const vis::Technique& technique) {
     const auto* surface = std::get_if<vis::IsoLayer>(&technique);
     if (surface && !surface->colorBy.empty()) return surface->colorBy;
     return vis::shownChannel(technique);
+}
+
+std::size_t selectedLayer(const Session& session) {
+    for (const auto& [pane, view] : session.views)
+        if (const auto* layers = std::get_if<LayersView>(&view)) {
+            const auto chosen = std::size_t(std::max(layers->selected, 0));
+            return chosen < session.layers.size() ? chosen : 0;
+        }
+    return 0;
+}
+
+std::string shownFunction(const Session& session, const TransferView& view) {
+    if (!view.channel.empty() || session.layers.empty()) return view.channel;
+    const vis::Layer& layer = session.layers[selectedLayer(session)];
+    return layer.transfer.empty() ? channelOfFunction(layer.technique) : layer.transfer;
+}
+
+void followSelectedLayer(Session& session) {
+    for (auto& [pane, view] : session.views)
+        if (auto* const shown = std::get_if<TransferView>(&view)) shown->channel.clear();
 }
 
 void setOwnFunction(Session& session, std::string& transfer, const std::string& channel, bool own,

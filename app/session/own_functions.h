@@ -23,8 +23,21 @@ std::optional<OwnFunction> ownFunction(const Session& session, const std::string
 /// the transfer function that show one show that of its parameter. A function that is a parameter's stays.
 void removeUnused(Session& session, const std::vector<OwnFunction>& before, const volume::DatasetInfo& info);
 
+/// A layer that now shows another parameter than `before`, from ownFunctions(), says of its function drops that.
+void dropFormerFunction(Session& session, vis::Layer& layer, const std::vector<OwnFunction>& before,
+                        const volume::DatasetInfo& info);
+
 /// The parameter whose values a layer's own function maps: of a surface, the one that colours it.
 const std::string& channelOfFunction(const vis::Technique& technique);
+
+/// The layer selected in the first list of layers, else the first.
+std::size_t selectedLayer(const Session& session);
+
+/// The function that a view of the transfer function shows, by its name in Session::transfer: the one chosen there,
+/// else that of the layer selected in the pane of layers. The session's layers are those of the volume view used last.
+std::string shownFunction(const Session& session, const TransferView& view);
+/// Views of the transfer function show that of the layer selected.
+void followSelectedLayer(Session& session);
 
 /// Gives what has `transfer` for the name of its function one of its own, which begins as that of `channel` and views
 /// of the transfer function then show; or takes it away, and with it a function that nothing else has.

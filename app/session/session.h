@@ -124,6 +124,19 @@ inline void takeAllowed(DataRef& to, const DataRef& from) {
     if (to.other && from.other) to.other->import.allowOutside = from.other->import.allowOutside;
 }
 
+/// A place and time whose values are kept in a list.
+struct Probe {
+    std::string name;
+    glm::dvec3 position{0}; ///< physical
+    double time = 0;        ///< in the unit of the data's times
+    bool operator==(const Probe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.name, FieldInfo{"name", "Name of the probe"});
+        visit(self.position, FieldInfo{.key = "position", .doc = "Where it is", .unit = kUnitOfLengths});
+        visit(self.time, FieldInfo{.key = "time", .doc = "Its time", .unit = kUnitOfTimes});
+    }
+};
+
 enum class Theme { Dark, Light };
 inline constexpr std::string_view kThemeNames[] = {"dark", "light"};
 
@@ -155,6 +168,7 @@ struct Session {
     // What all views share.
     double time = 0;
     glm::dvec3 cursor{0}; ///< physical; the linked cross-hair
+    std::vector<Probe> probes;
     glm::dvec3 stretch{1};
     vis::Camera camera;
     vis::Selection selection;
@@ -188,6 +202,7 @@ struct Session {
         visit(self.time, FieldInfo{.key = "time", .doc = "Time shown in every view", .unit = kUnitOfTimes});
         visit(self.cursor,
               FieldInfo{.key = "cursor", .doc = "Position of the linked cross-hair", .unit = kUnitOfLengths});
+        visit(self.probes, FieldInfo{"probes", "Places and times whose values are kept in a list"});
         visit(self.stretch, FieldInfo{.key = "stretch",
                                       .doc = "Factor by which each axis is stretched; 1 = true proportions",
                                       .range = Range{0.01, 1e6},

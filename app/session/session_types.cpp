@@ -15,6 +15,8 @@ template const ValueType& valueType<HistoryView>();
 template const ValueType& valueType<LayersView>();
 template const ValueType& valueType<LogView>();
 template const ValueType& valueType<ObliqueView>();
+template const ValueType& valueType<Probe>();
+template const ValueType& valueType<ProbesView>();
 template const ValueType& valueType<ProfileView>();
 template const ValueType& valueType<ScatterMatrixView>();
 template const ValueType& valueType<Session>();

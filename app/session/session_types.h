@@ -19,6 +19,8 @@ extern template const ValueType& valueType<HistoryView>();
 extern template const ValueType& valueType<LayersView>();
 extern template const ValueType& valueType<LogView>();
 extern template const ValueType& valueType<ObliqueView>();
+extern template const ValueType& valueType<Probe>();
+extern template const ValueType& valueType<ProbesView>();
 extern template const ValueType& valueType<ProfileView>();
 extern template const ValueType& valueType<ScatterMatrixView>();
 extern template const ValueType& valueType<Session>();

@@ -61,8 +61,8 @@ bool nameCell(const std::string& text, const TableRowLook& row, bool cut) {
     }
     if (row.tip.empty()) return textCell(text, row.faint, cut), false;
     const std::string shown = cut ? fitText(text, ImGui::GetContentRegionAvail().x) : text;
-    const bool clicked =
-        ImGui::Selectable((shown + "##row").c_str(), row.selected, ImGuiSelectableFlags_SpanAllColumns);
+    const bool clicked = ImGui::Selectable((shown + "##row").c_str(), row.selected,
+                                           ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowItemOverlap);
     if (ImGui::IsItemHovered()) tooltip(row.tip.c_str());
     return clicked;
 }
@@ -91,7 +91,11 @@ std::optional<std::size_t> drawTable(const char* id, const Table& table, const T
             if (c + 1 == table.names) {
                 if (nameCell(cells[r][c], row, cut)) clicked = r;
             } else if (columns[c]->texts.empty()) {
-                textRight(cells[r][c], row.faint);
+                const std::string tip = look.numberTip ? look.numberTip(r, *columns[c]) : "";
+                if (tip.empty())
+                    textRight(cells[r][c], row.faint);
+                else if (linkRight(columns[c]->name, cells[r][c], tip, row.faint))
+                    look.numberClicked(r, *columns[c]);
             } else {
                 textCell(cells[r][c], row.faint && c >= table.names, cut);
             }

@@ -23,6 +23,9 @@ struct TableLook {
     std::function<TableRowLook(std::size_t row)> row = {}; ///< null: all alike
     std::vector<float> widths = {}; ///< of shown columns in pixels, 0: the rest; empty: as wide as texts and numbers
     bool scrolls = false;           ///< with these widths
+    /// Under the mouse, of a number that can be clicked; "": it cannot. Null: none can.
+    std::function<std::string(std::size_t row, const TableColumn& column)> numberTip = {};
+    std::function<void(std::size_t row, const TableColumn& column)> numberClicked = {};
 };
 
 /// Draws the shown columns under heads that stay, with the names in front. They are stretched to the width if all texts

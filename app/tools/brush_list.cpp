@@ -6,7 +6,7 @@
 #include "app/tools/lens_list.h"
 #include "app/tools/space_handles.h"
 #include "app/ui/parameter_widget.h"
-#include "app/ui/ticks.h"
+#include "app/values/selection_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,47 +16,6 @@
 namespace tessera::app {
 
 namespace {
-
-/// One line that says what a region holds.
-std::string regionText(const volume::DatasetInfo& info, const vis::Region& region) {
-    if (const auto* range = std::get_if<vis::RangeRegion>(&region)) {
-        std::string text;
-        for (const vis::BrushInterval& interval : range->intervals) {
-            const auto channel = info.findChannel(interval.channel);
-            if (!text.empty()) text += ", ";
-            if (!channel) {
-                text += interval.channel + " (missing)";
-                continue;
-            }
-            const volume::Channel own = info.channel(*channel);
-            const Range all = info.channelRange(own);
-            const double digits = (all.hi - all.lo) / 1000;
-            text += interval.channel + "  " + formatNumber(interval.lo, digits) + " .. " +
-                    formatQuantity(interval.hi, own.unit, digits);
-        }
-        return text.empty() ? "everything" : text;
-    }
-    if (const auto* ellipse = std::get_if<vis::EllipseRegion>(&region))
-        return "ellipse in " + ellipse->x + " \u00d7 " + ellipse->y;
-    if (const auto* lasso = std::get_if<vis::LassoRegion>(&region))
-        return "lasso in " + lasso->x + " \u00d7 " + lasso->y + ", " + std::to_string(lasso->points.size()) +
-               " corners";
-    if (const auto* lens = std::get_if<vis::LensRegion>(&region))
-        return lens->lens.empty() ? "all lenses that mark samples" : "inside the lens " + lens->lens;
-    const bool box = std::holds_alternative<vis::BoxRegion>(region);
-    glm::dvec3 radius = box ? std::get<vis::BoxRegion>(region).radius : std::get<vis::SphereRegion>(region).radius;
-    if (const volume::AxisMaps& axes = info.lattice.axes; !box && !axes.isEven()) { // how far it reaches in space
-        const vis::SheetBox ball = vis::sheetBox(std::get<vis::SphereRegion>(region), axes);
-        radius = (axes.toSpace(ball.center + ball.radius) - axes.toSpace(ball.center - ball.radius)) / 2.0;
-    }
-    std::string text = box ? "box" : "sphere";
-    const LengthUnit unit = suitableLength(info.lengthUnit, 2 * std::max({radius.x, radius.y, radius.z}));
-    for (int axis = 0; axis < 3; ++axis) {
-        const double size = 2 * radius[axis] * unit.perUnit;
-        text += (axis ? " \u00d7 " : "  ") + formatNumber(size, size / 50); // two or three digits
-    }
-    return text + " " + prettyUnit(unit.name);
-}
 
 /// A narrow choice of how a brush combines with those before it.
 void chooseCombine(vis::Brush& brush) {
@@ -166,6 +125,7 @@ void drawBrushList(ViewContext& context, NextEntry next) {
         ImGui::PushTextWrapPos();
         ImGui::TextDisabled("Selected: %s", together.c_str());
         ImGui::PopTextWrapPos();
+        drawSelectionName(context.session);
     }
     const auto button = [](const char* text, bool first = false) { // beside the last one, or below where it is narrow
         const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
@@ -178,10 +138,20 @@ void drawBrushList(ViewContext& context, NextEntry next) {
     if (button("Box at cross-hair")) addSpaceBrush(context.session, context.source->info(), true);
     if (!context.session.lenses.empty() && button("Inside the lens")) addLensBrush(context.session);
     if (!selection.brushes.empty() && button("Clear all")) clearBrushes(context);
-    if (selection.active() && button("Make selection opaque")) makeOpaque(context.session);
+    if (selection.active() && button("Make selection opaque")) selection.focusOpacity = 1;
     if (selection.active() && ImGui::IsItemHovered())
-        tooltip("Gives every volume the same opacity for all values, so that selected samples are visible even where "
-                "the transfer function hides them");
+        tooltip("Nothing is seen through what is selected, whatever the transfer functions say");
+}
+
+void drawSelectionName(Session& session) {
+    const auto enabled = std::ranges::count_if(session.selection.brushes, &vis::Brush::enabled);
+    if (enabled == 0) return;
+    const auto only = std::ranges::find_if(session.selection.brushes, &vis::Brush::enabled);
+    std::string name = enabled == 1 ? only->name : session.selection.name;
+    ImGui::SetNextItemWidth(std::min(em() * 16, ImGui::GetContentRegionAvail().x));
+    if (ImGui::InputTextWithHint("##selection name", selectionName(session).c_str(), &name))
+        nameSelection(session, name);
+    if (ImGui::IsItemHovered()) tooltip("Name of what is selected, in tables, plots, legends and files");
 }
 
 void addLensBrush(Session& session) {
@@ -192,37 +162,14 @@ void addLensBrush(Session& session) {
     session.selection.brushes.push_back(std::move(brush));
 }
 
-void makeOpaque(Session& session) {
-    for (vis::Layer& layer : session.layers) {
-        const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
-        if (!volume || !layer.visible || volume->style != vis::RayStyle::Composite) continue;
-        if (layer.transfer.empty()) {
-            std::string name = layerName(layer);
-            while (name.empty() || session.transfer.contains(name)) name += "'";
-            session.transfer[name] = transferOf(std::as_const(session), volume->channel);
-            layer.transfer = name;
-        }
-        session.transfer[layer.transfer].opacity = {{0, 0.6f}, {1, 0.6f}};
-    }
-}
-
 std::string combinationText(const vis::Selection& selection) {
-    std::string text;
-    int count = 0;
-    bool either = false;
-    for (std::size_t i = 0; i < selection.brushes.size(); ++i) {
-        const vis::Brush& brush = selection.brushes[i];
-        if (!brush.enabled) continue;
-        either = either || brush.combine == vis::BrushCombine::Or;
-        static constexpr const char* kWords[] = {" and ", " or ", " without "};
-        if (count > 1 && text.find(' ') != std::string::npos) text = "(" + text + ")";
-        // The first brush combines with all samples, so that "minus" inverts it.
-        const bool taken = brush.inverted != (count == 0 && brush.combine == vis::BrushCombine::Minus);
-        const std::string own = (taken ? "not " : "") + std::to_string(i + 1);
-        text = count > 0 ? text + kWords[static_cast<std::size_t>(brush.combine)] + own : own;
-        ++count;
-    }
-    return count < 2 ? std::string() : either ? text : text + "; Shift in a plot adds (or), Ctrl removes (minus)";
+    const auto enabled = std::ranges::count_if(selection.brushes, &vis::Brush::enabled);
+    if (enabled < 2) return {};
+    const std::string text = combinedBrushes(selection, [](std::size_t i) { return std::to_string(i + 1); });
+    const bool either = std::ranges::any_of(selection.brushes, [](const vis::Brush& brush) {
+        return brush.enabled && brush.combine == vis::BrushCombine::Or;
+    });
+    return either ? text : text + "; Shift in a plot adds (or), Ctrl removes (minus)";
 }
 
 vis::Brush spaceBrush(const Session& session, const volume::DatasetInfo& info, bool box) {

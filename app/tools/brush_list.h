@@ -11,6 +11,9 @@ namespace tessera::app {
 /// list goes to `next` and unfolds it.
 void drawBrushList(ViewContext& context, NextEntry next = {});
 
+/// A field for the name of what is selected; nothing without an enabled brush.
+void drawSelectionName(Session& session);
+
 /// The combination of the enabled brushes by their numbers: "(1 and 2) or 3", with a hint on other combinations if they
 /// only narrow the selection; "" for fewer than two.
 std::string combinationText(const vis::Selection& selection);
@@ -23,9 +26,6 @@ void addSpaceBrush(Session& session, const volume::DatasetInfo& info, bool box);
 
 /// Adds a brush of what is inside the newest lens. There must be one.
 void addLensBrush(Session& session);
-
-/// Gives each visible volume a function of its own that hides nothing.
-void makeOpaque(Session& session);
 
 /// Removes every brush; of several by the command, which asks.
 void clearBrushes(ViewContext& context);

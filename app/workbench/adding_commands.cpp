@@ -131,9 +131,9 @@ void addBrushes(SceneChanges& list) {
                  });
     list.add(
         SceneTask::Brushes, "Make selection opaque",
-        "Give every volume one opacity, so that selected samples are seen wherever they are",
+        "Let nothing be seen through what is selected, whatever the transfer functions say",
         "brush focus transfer function hidden visible",
-        [](Session& session, const volume::DatasetInfo&) { makeOpaque(session); },
+        [](Session& session, const volume::DatasetInfo&) { session.selection.focusOpacity = 1; },
         [&workbench] { return workbench.session().selection.active(); });
 }
 

@@ -1,5 +1,6 @@
 #include "app/data/library.h"
 #include "app/pane/view_parts.h"
+#include "app/session/own_functions.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
 #include "app/views/data/derived_list.h"
@@ -382,8 +383,8 @@ std::vector<Command> transferCommands(Workbench& workbench) {
 
 std::vector<Command> editCommands(Workbench& workbench) {
     std::vector<Command> all;
-    for (const auto make : {historyCommands, brushCommands, timeCommands, latticeCommands, timeAlongCommands,
-                            differenceCommands, derivedCommands, transferCommands}) {
+    for (const auto make : {historyCommands, brushCommands, placeCommands, timeCommands, latticeCommands,
+                            timeAlongCommands, differenceCommands, derivedCommands, transferCommands}) {
         std::vector<Command> commands = make(workbench);
         std::ranges::move(commands, std::back_inserter(all));
     }

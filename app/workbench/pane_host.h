@@ -37,6 +37,8 @@ public:
     const ViewExport* exported(const std::string& pane) const;
     /// Offers the table of the current pane for saving in the next frame.
     void exportTable(const Session& session) { tablePane_ = current(session); }
+    /// The same of a pane, once it is drawn.
+    void exportTableOf(const std::string& pane) { tablePane_ = pane; }
     /// Drops the caches of views, after other data were installed.
     void forget() { caches_.clear(); }
 

@@ -2,6 +2,7 @@
 #include "app/described/key_words.h"
 #include "app/edits/scene_task.h"
 #include "app/pane/view_parts.h"
+#include "app/session/own_functions.h"
 #include "app/session/shown_scene.h"
 #include "app/tools/camera_controller.h"
 #include "app/workbench/workbench.h"

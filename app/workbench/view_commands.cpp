@@ -95,7 +95,29 @@ void addPaneCommands(std::vector<Command>& commands, Workbench& workbench) {
          }});
 }
 
+/// Offers the statistics of the selection for saving, in a pane that shows them.
+void saveSelection(Workbench& workbench) {
+    Session& session = workbench.session();
+    const auto shows = [](const auto& entry) {
+        const auto* statistics = std::get_if<StatisticsView>(&entry.second);
+        return statistics && !statistics->byRegion;
+    };
+    if (std::ranges::none_of(session.views, shows))
+        workbench.panes().open(session, StatisticsView{}, workbench.look().scale());
+    const std::string pane = std::ranges::find_if(session.views, shows)->first;
+    workbench.panes().show(session, pane);
+    workbench.panes().exportTableOf(pane);
+}
+
 void addExportCommand(std::vector<Command>& commands, Workbench& workbench) {
+    commands.push_back(
+        {.menu = "",
+         .name = "Save the selection as a table...",
+         .help = "Save the statistics of what is brushed and of the rest, with its name and definition, "
+                 "as CSV",
+         .words = "export csv brush region numbers statistics",
+         .run = [&workbench] { saveSelection(workbench); },
+         .enabled = [&workbench] { return workbench.document().loaded() && workbench.session().selection.active(); }});
     commands.push_back({.menu = "",
                         .name = "Export table...",
                         .help = "Save the numbers of the pane under the mouse, or of the one clicked last, as CSV",

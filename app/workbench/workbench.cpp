@@ -93,7 +93,7 @@ void Workbench::frame() {
     if (!options_.headless) {
         if (memory_.due(busy(), now())) volume::giveBackFreeMemory();
         drawDialogs();
-        if (const Command* command = drawPalette(palette_, commands_)) chosen_ = command->run;
+        drawPaletteOfAll();
         play();
     }
     const bool editing = ImGui::IsAnyItemActive() || ImGui::IsMouseDown(ImGuiMouseButton_Left) ||
@@ -102,6 +102,13 @@ void Workbench::frame() {
     if (autosaver_) autosaver_->update(document_, now(), jobs_, messages_);
     cancelledDrag_.end();
     keyboard_.end();
+}
+
+void Workbench::drawPaletteOfAll() {
+    if (!palette_.open && !palette_.shown) return;
+    std::vector<Command> all = commands_; // and those that depend on the data
+    std::ranges::move(extremesOfParameters(*this), std::back_inserter(all));
+    if (const Command* command = drawPalette(palette_, all)) chosen_ = command->run;
 }
 
 void Workbench::pressKeys() {
@@ -134,6 +141,7 @@ ViewContext Workbench::viewContext() {
                     for (const Command& command : commands_)
                         if (command.title() == name && command.available()) chosen_ = command.run;
                 },
+            .goTo = [this](const ExtremeQuestion& question) { app::goTo(*this, question); },
             .exportText =
                 [this](const std::string& name, std::function<std::string(const Progress&)> make) {
                     const auto dot = name.rfind('.');

@@ -136,6 +136,7 @@ private:
     double now() const; ///< s
     ViewContext viewContext();
     void pressKeys();
+    void drawPaletteOfAll();
     void drawWindow();
     std::string whyEmpty() const; ///< what went wrong last, where nothing is open
     void drawMenus();

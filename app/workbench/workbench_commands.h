@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/queries/extreme_query.h"
 #include "app/ui/commands.h"
 #include "volume/import/import_options.h"
 
@@ -24,6 +25,15 @@ std::vector<Command> addingCommands(Workbench& workbench);
 /// Commands that change the scene; they are in no menu of the window.
 std::vector<Command> sceneCommands(Workbench& workbench);
 std::vector<Command> helpCommands(Workbench& workbench);
+
+/// To the least and the greatest value of the parameter shown; and to keep the place of the cross-hair as a probe. A
+/// part of editCommands().
+std::vector<Command> placeCommands(Workbench& workbench);
+/// To the extremes of every parameter of the data now open, for the palette.
+std::vector<Command> extremesOfParameters(Workbench& workbench);
+/// Looks for a place in the background, then moves the cross-hair there, and the time where all were asked about; a
+/// message says what was found.
+void goTo(Workbench& workbench, const ExtremeQuestion& question);
 
 /// Shows the data beside those of other files, of which the user states what they do not contain, in the comparison
 /// that shows files or in a new one.

@@ -44,9 +44,11 @@ TEST_F(LayoutTest, ALayoutChosenKeepsTheTimeAndItsSurfacesExistThen) {
         for (std::size_t t = 0; t < info.times.size(); ++t) {
             Session shown = opened.document.session;
             shown.time = info.times[t];
+            shown.probes = {{"inlet", shown.cursor, shown.time}};
             std::vector<std::string> messages;
             const Session session = changeLayout(loadSession(findLayout(name)), *opened.source, shown, messages);
             EXPECT_EQ(session.time, shown.time) << name;
+            EXPECT_EQ(session.probes, shown.probes) << name;
             EXPECT_EQ(session.cursor, shown.cursor) << name;
             bool surface = false;
             for (const vis::Layer& layer : session.layers) {

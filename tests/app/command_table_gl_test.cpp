@@ -28,6 +28,7 @@ const std::set<std::string> kElsewhere = {
     "Compare with another file...",            // ComparedFiles
     "Save picture...",                         // tests/e2e/window.sh
     "Export table...",                         // Palette.TheTableOfThePaneClickedLastIsExported
+    "Save the selection as a table...",        // Palette.TheSelectionIsSavedAsATable
     "Export surface...",                       // AsyncQueries, tests/e2e/mesh.sh
     "Both grids of D4* at every time",         // WorkbenchData.OneGridOfAnArchiveInSpaceAndTimeIsAStepOfTheHistory
     "First grid of D4* alone, as stored",      // the same
@@ -216,6 +217,17 @@ const std::map<std::string, Check>& checks() {
                  for (std::size_t i = 0; i < after.selection.brushes.size(); ++i)
                      EXPECT_NE(after.selection.brushes[i].inverted, before.selection.brushes[i].inverted);
              }},
+            {"Go to the maximum",
+             [](const Session& before, const Session& after) { EXPECT_NE(after.cursor, before.cursor); }},
+            {"Go to the minimum",
+             [](const Session& before, const Session& after) { EXPECT_NE(after.cursor, before.cursor); }},
+            {"Keep the values here",
+             [](const Session& before, const Session& after) {
+                 ASSERT_EQ(after.probes.size(), before.probes.size() + 1);
+                 EXPECT_EQ(after.probes.back().position, before.cursor);
+                 EXPECT_EQ(after.probes.back().time, before.time);
+                 EXPECT_EQ(after.views.size(), before.views.size() + 1) << "the list is shown";
+             }},
             {"Library of transfer functions",
              [](const Session&, const Session& after) {
                  EXPECT_TRUE(std::ranges::any_of(after.views, [](const auto& view) {
@@ -265,7 +277,10 @@ const std::map<std::string, Check>& checks() {
                  EXPECT_EQ(after.lighting.lights.size(), before.lighting.lights.size() + 1);
              }},
             {"Make selection opaque",
-             [](const Session& before, const Session& after) { EXPECT_NE(after.transfer, before.transfer); }},
+             [](const Session& before, const Session& after) {
+                 EXPECT_LT(before.selection.focusOpacity, 1);
+                 EXPECT_EQ(after.selection.focusOpacity, 1);
+             }},
             {"True proportions",
              [](const Session& before, const Session& after) {
                  EXPECT_NE(before.stretch, glm::dvec3(1));

@@ -34,18 +34,19 @@ enum Input {
     kOwnCamera,
     kOwnLayers,
     kOwnTime,
+    kProbes,
     kUnit, ///< last: these are other data
     kInputs
 };
 
 /// Every part of a session by its key, and the input that changes it; kInputs: no part of what views show of the data.
 const std::map<std::string, Input> kSessionParts = {
-    {"schema", kInputs},       {"title", kInputs},      {"data", kLattice},  {"time", kTime},
-    {"cursor", kCursor},       {"stretch", kStretch},   {"camera", kCamera}, {"selection", kBrush},
-    {"transfer", kTransfer},   {"layers", kLayers},     {"render", kRender}, {"lighting", kLighting},
-    {"clips", kClips},         {"lenses", kLenses},     {"tone", kTone},     {"paper", kPaper},
-    {"animation", kInputs},    {"appearance", kInputs}, {"views", kInputs},  {"dock", kInputs},
-    {"layoutBrushes", kInputs}};
+    {"schema", kInputs},        {"title", kInputs},      {"data", kLattice},  {"time", kTime},
+    {"cursor", kCursor},        {"stretch", kStretch},   {"camera", kCamera}, {"selection", kBrush},
+    {"transfer", kTransfer},    {"layers", kLayers},     {"render", kRender}, {"lighting", kLighting},
+    {"clips", kClips},          {"lenses", kLenses},     {"tone", kTone},     {"paper", kPaper},
+    {"animation", kInputs},     {"appearance", kInputs}, {"views", kInputs},  {"dock", kInputs},
+    {"layoutBrushes", kInputs}, {"probes", kProbes}};
 
 /// By kind of view: F where what it shows follows the input, a dot where it must stay as it is. Of views that can be
 /// exported that is the table, of the others and of slices the picture.
@@ -76,26 +77,28 @@ void PrintTo(const Consumer& each, std::ostream* out) {
 //                       | | | | | | | | | | | | | | | | own camera
 //                       | | | | | | | | | | | | | | | | | own layers
 //                       | | | | | | | | | | | | | | | | | | own time
-//                       | | | | | | | | | | | | | | | | | | | unit
+//                       | | | | | | | | | | | | | | | | | | | probes
+//                       | | | | | | | | | | | | | | | | | | | | unit
 constexpr Consumer kConsumers[] = {
-    {"volume",          "F F F F F F F F F F F F F F F . F F F F"},
-    {"slices",          "F F F F . F F . F . F F F . F F . . . F"},
-    {"scatterMatrix",   "F F . . . F . . . . . F . . . F . . . F"},
-    {"transfer",        "F F F . . F F . . . . F . . . . . F . F"},
-    {"layers",          ". . . . . F . F . . F F . . . . . F . ."},
-    {"timeline",        "F F . . . . . . . . . . . . . . . . . ."},
-    {"data",            "F F . . . F . . . . . F . . F F . . . F"},
+    {"volume",          "F F F F F F F F F F F F F F F . F F F F F"},
+    {"slices",          "F F F F . F F . F . F F F . F F . . . . F"},
+    {"scatterMatrix",   "F F . . . F . . . . . F . . . F . . . . F"},
+    {"transfer",        "F F F . . F F . . . . F . . . . . F . . F"},
+    {"layers",          ". . . . . F . F . . F F . . . . . F . . ."},
+    {"timeline",        "F F . . . . . . . . . . . . . . . . . . ."},
+    {"data",            "F F . . . F . . . . . F . . F F . . . . F"},
     {"history",         ""}, // lists the edits themselves
-    {"log",             ". . . . . . . . . . . . . . . . . . . ."},
-    {"statistics",      "F F . . . F . . . . . F . . . F . . . F"},
-    {"histogram",       "F F . . . F . . . . . F . . . . . . . F"},
-    {"profile",         "F F F . . . . . . . . . . . . F . . . F"},
-    {"curves",          ". . . . . F . . . . . F . . . . . . . F"},
-    {"sliceMatrix",     "F F . . . . . . . . . . . . . F . . . F"},
-    {"oblique",         "F F F F . . . . . . . . . . . F . . . F"},
-    {"shadowCube",      "F F F F F F F F F F F F F . F . . . . F"},
-    {"tesseract",       "F F . . . F F . . . . . . . F . . . . F"},
-    {"compare",         "F F F F F F F F F F F F F F F . . . . F"},
+    {"log",             ". . . . . . . . . . . . . . . . . . . . ."},
+    {"statistics",      "F F . . . F . . . . . F . . . F . . . . F"},
+    {"histogram",       "F F . . . F . . . . . F . . . . . . . . F"},
+    {"probes",          ". . . . . . . . . . . . . . . F . . . F F"},
+    {"profile",         "F F F . . . . . . . . . . . . F . . . . F"},
+    {"curves",          ". . . . . F . . . . . F . . . . . . . . F"},
+    {"sliceMatrix",     "F F . . . . . . . . . . . . . F . . . . F"},
+    {"oblique",         "F F F F . . . . . . . . . . . F . . . . F"},
+    {"shadowCube",      "F F F F F F F F F F F F F . F . . . . . F"},
+    {"tesseract",       "F F . . . F F . . . . . . . F . . . . . F"},
+    {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
 };
 // clang-format on
 constexpr bool hasEveryKindInOrder() {
@@ -121,6 +124,7 @@ protected:
         if (auto* compare = std::get_if<CompareView>(&view)) compare->showTable = false; // of times
         if (auto* curves = std::get_if<CurvesView>(&view)) curves->y = {"mean(T)"}, curves->brushed = true;
         install(view);
+        if (std::holds_alternative<ProbesView>(view)) start.probes = {{"one", {0.0121, 0.0042, -0.0004}, 0.5}};
     }
 
     void change(Session& session, Input input) const {
@@ -185,6 +189,9 @@ protected:
             break;
         case kOwnTime:
             volumeOf(session).time = 2;
+            break;
+        case kProbes:
+            session.probes.push_back({"other", {0.0152, 0.0083, 0.0007}, 2});
             break;
         case kUnit:
         case kInputs:

@@ -185,6 +185,28 @@ TEST_F(Palette, TheTableOfThePaneClickedLastIsExported) {
     press(key::kEscape);
 }
 
+TEST_F(Palette, TheSelectionIsSavedAsATable) {
+    ASSERT_FALSE(run("Save the selection as a table...")) << "nothing is brushed";
+    addBrush("starved");
+    const std::size_t views = workbench.session().views.size();
+    ASSERT_TRUE(run("Save the selection as a table..."));
+    for (int i = 0; i < 3; ++i) frame();
+    EXPECT_EQ(workbench.session().views.size(), views + 1) << "a table of it is shown";
+    EXPECT_TRUE(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel))
+        << "a file is asked";
+    press(key::kEscape);
+}
+
+TEST_F(Palette, ExtremesOfTheDataAreFound) {
+    const glm::dvec3 before = workbench.session().cursor;
+    workbench.palette().open = true;
+    for (int i = 0; i < 3; ++i) frame();
+    type("maximum of");
+    press(key::kEnter);
+    settle();
+    EXPECT_NE(workbench.session().cursor, before);
+}
+
 TEST_F(Palette, WhatIsTypedIsRunByEnter) {
     const std::size_t layers = workbench.session().layers.size();
     workbench.palette().open = true;

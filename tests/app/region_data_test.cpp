@@ -141,8 +141,9 @@ TEST(RegionData, SectionsCountWhatIsBrushed) {
     SectionCurvesQuery query;
     query.channels = {0};
     query.selection.brushes = {vis::rangeBrush({{"region", 0.75, 1.25, 0}})};
+    query.selection.name = "cathode";
     const SectionCurves brushed = readSections(source, query);
-    EXPECT_EQ(curveLooks(source->info(), query)[0].name, "selection");
+    EXPECT_EQ(curveLooks(source->info(), query)[0].name, "cathode");
     query.selection = {};
     query.label = 1;
     query.regions = {1};

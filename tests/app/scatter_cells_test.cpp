@@ -53,7 +53,8 @@ protected:
     std::vector<std::string> said(std::size_t column, std::size_t row, int x, int y, const std::string& colorBy = {}) {
         const PlotFrame frame{{100, 100}, {300, 300}, {0, 8}, {0, 8}};
         mouse = frame.pixel(x * 2 + 1, y * 2 + 1);
-        for (int i = 0; i < 3; ++i) feedWindow([&] { hoverText(matrix, column, row, frame, result, info, colorBy); });
+        for (int i = 0; i < 3; ++i)
+            feedWindow([&] { hoverText(matrix, column, row, frame, result, info, colorBy, "starved"); });
         return drawnWords();
     }
 
@@ -68,13 +69,13 @@ TEST_F(ScatterCells, ABinSaysItsPlaceAndItsSamples) {
     EXPECT_THAT(said(0, 1, 3, 2), ElementsAre("a 7", "b 5", "11 samples, 28 %"));
     EXPECT_THAT(said(0, 0, 2, 0), ElementsAre("a 5", "4 samples, 40 %"));
     result.brushed = true;
-    EXPECT_THAT(said(0, 1, 3, 2), ElementsAre("a 7", "b 5", "11 samples, 28 %", "50 % of them in focus"));
+    EXPECT_THAT(said(0, 1, 3, 2), ElementsAre("a 7", "b 5", "11 samples, 28 %", "50 % of them in starved"));
     EXPECT_THAT(said(0, 1, 0, 0), ElementsAre("a 1", "b 1", "0 samples, 0 %")) << "of none no share";
-    EXPECT_THAT(said(0, 0, 1, 0), ElementsAre("a 3", "2 samples, 20 %", "50 % of them in focus"));
+    EXPECT_THAT(said(0, 0, 1, 0), ElementsAre("a 3", "2 samples, 20 %", "50 % of them in starved"));
     result.statistics.joint[0].mean.assign(kBins * kBins, kNan);
     result.statistics.joint[0].mean.back() = 3.5;
     EXPECT_EQ(said(0, 1, 3, 3, "c").back(), "mean c 3.5");
-    EXPECT_EQ(said(0, 1, 2, 3, "c").back(), "50 % of them in focus");
+    EXPECT_EQ(said(0, 1, 2, 3, "c").back(), "50 % of them in starved");
 }
 
 TEST_F(ScatterCells, AnUpperCellSaysTheCorrelation) {
@@ -82,7 +83,7 @@ TEST_F(ScatterCells, AnUpperCellSaysTheCorrelation) {
     result.brushed = true;
     result.statistics.joint[0].focusCorrelation = kNan;
     EXPECT_THAT(said(1, 0, 0, 0),
-                ElementsAre("a and b", "correlation 0.250", "in focus not defined", "40 samples have both"));
+                ElementsAre("a and b", "correlation 0.250", "in starved not defined", "40 samples have both"));
     result.statistics.level = 1;
     EXPECT_EQ(said(1, 0, 0, 0).back(), "(estimated from a coarser level)");
 }
@@ -106,7 +107,7 @@ TEST_F(ScatterCells, BarsAreAsHighAsTheirShareOfTheHighest) {
     EXPECT_NEAR(all[0], all[2] / 4, 1);
     const std::vector<double> own = heights(focus);
     EXPECT_NEAR(own[1], all[2] / 4, 1);
-    EXPECT_NEAR(own[2], all[2], 1) << "all of them in focus";
+    EXPECT_NEAR(own[2], all[2], 1) << "all of them in starved";
     feedWindow([&] { drawHistogram(*ImGui::GetWindowDrawList(), frame, histogram, false, true, focus); });
     EXPECT_TRUE(drawnIn(focus).empty());
     EXPECT_NEAR(heights(plotColors().bars)[0], all[2] * std::log(2.0) / std::log(5.0), 1);

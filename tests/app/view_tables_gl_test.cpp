@@ -1,7 +1,9 @@
 #include "tests/app/formula_view.h"
 #include "tests/app/table_text.h"
 
+#include <gmock/gmock.h>
 #include <map>
+#include <set>
 
 /// What views export, read back and compared with numbers computed from the formulas, for several times and selections.
 namespace tessera::app {
@@ -11,6 +13,8 @@ using formula::between;
 using formula::Place;
 using formula::Sum;
 using formula::summed;
+using testing::HasSubstr;
+using testing::Not;
 
 /// Times, with and without a brush of T, that every table is read at.
 struct Case {
@@ -54,7 +58,8 @@ protected:
         Session session = start;
         session.time = of.time;
         if (of.brush) {
-            session.selection.brushes = {vis::rangeBrush({{.channel = "T", .lo = of.brush->lo, .hi = of.brush->hi}})};
+            session.selection.brushes = {
+                vis::rangeBrush({{.channel = "T", .lo = of.brush->lo, .hi = of.brush->hi}}, "warm")};
             session.selection.brushes[0].inverted = of.inverted;
         }
         return tableOf(table(session));
@@ -71,7 +76,7 @@ TEST_F(ViewTables, StatisticsAreThoseOfTheSamples) {
             const std::string name = table.text(row, "parameter"), part = table.text(row, "region");
             EXPECT_EQ(table.text(row, "unit"), name == "T" ? "K" : name == "c" ? "mol/m3" : "m/s");
             const Sum sum = summed(name, of.time, [&](Place at) {
-                return part == "all" || (part == "inside") == (interest(of, at) == 1);
+                return part == "all" || (part == (of.inverted ? "not warm" : "warm")) == (interest(of, at) == 1);
             });
             SCOPED_TRACE(name + " " + part);
             EXPECT_GT(sum.samples, 0);
@@ -110,6 +115,61 @@ TEST_F(ViewTables, RegionsAreCountedEachByItself) {
     }
 }
 
+TEST_F(ViewTables, RegionsAreCountedWithinTheSelection) {
+    StatisticsView view;
+    view.byRegion = view.selected = true;
+    install(view);
+    for (const Case& of : cases()) {
+        SCOPED_TRACE(of.time);
+        const TableText table = shownAt(of);
+        const std::string whole = !of.brush ? "all" : of.inverted ? "not warm" : "warm";
+        std::set<std::string> named;
+        for (std::size_t row = 0; row < table.rows.size(); ++row) {
+            const std::string name = table.text(row, "parameter"), region = table.text(row, "region");
+            SCOPED_TRACE(name + " " + region);
+            named.insert(region);
+            const auto in = [&](Place at) {
+                return interest(of, at) == 1 && (region == whole || (region == "west") == (at.x < 4));
+            };
+            const Sum sum = summed(name, of.time, in);
+            EXPECT_EQ(table.number(row, "samples"), sum.samples);
+            EXPECT_NEAR(*table.number(row, "mean"), sum.mean, 2e-4);
+            EXPECT_NEAR(*table.number(row, "min"), sum.least, 2e-4);
+            EXPECT_NEAR(*table.number(row, "max"), sum.most, 2e-4);
+            EXPECT_NEAR(*table.number(row, "shareOfAll"), sum.samples / (8 * 7 * 9), 1e-9);
+        }
+        EXPECT_TRUE(named.contains(whole));
+        EXPECT_GE(named.size(), 2u);
+    }
+}
+
+TEST_F(ViewTables, ExportsStateHowTheSelectionIsDefined) {
+    StatisticsView view;
+    install(view);
+    Session session = start;
+    session.time = 0.5;
+    session.selection.brushes = {vis::rangeBrush({{.channel = "T", .lo = 318.5, .hi = 341.25, .soft = 2}}, "warm")};
+    std::string csv = table(session);
+    EXPECT_THAT(csv, HasSubstr("# selection \"warm\": T 318.5 .. 341.25 K (soft edge 2 K)\n"));
+    EXPECT_THAT(csv, HasSubstr("weightedSamples")) << "a soft edge counts parts of samples";
+    EXPECT_THAT(csv, HasSubstr("at t = 0.5"));
+    EXPECT_THAT(csv, Not(HasSubstr("inside")));
+    session.selection.brushes[0].region =
+        vis::BoxRegion{.center = {0.012, 0.004, -0.001}, .radius = {0.002, 0.003, 0.0005}};
+    session.selection.brushes.push_back(vis::rangeBrush({{.channel = "T", .lo = 0, .hi = 341.25}}, "cool"));
+    session.selection.brushes[1].combine = vis::BrushCombine::Minus;
+    csv = table(session);
+    EXPECT_THAT(csv, HasSubstr("# selection \"warm without cool\"\n"));
+    EXPECT_THAT(csv, HasSubstr("# brush \"warm\": box 4 \u00d7 6 \u00d7 1 mm around x 12, y 4, z -1 mm\n"));
+    EXPECT_THAT(csv, HasSubstr("# brush \"cool\": T 0 .. 341.25 K\n"));
+    EXPECT_THAT(csv, HasSubstr("not (warm without cool)"));
+    session.selection.name = "hot spot";
+    csv = table(session);
+    EXPECT_THAT(csv, HasSubstr("# selection \"hot spot\": warm without cool\n"));
+    EXPECT_THAT(csv, HasSubstr(",not hot spot,"));
+    EXPECT_THAT(csv, HasSubstr(",samples,")) << "whole ones";
+}
+
 TEST_F(ViewTables, HistogramsCountEachSampleInItsBin) {
     for (const char* channel : {"T", "c"}) {
         HistogramView view;
@@ -136,7 +196,9 @@ TEST_F(ViewTables, HistogramsCountEachSampleInItsBin) {
                             1e-6 * range.hi);
                 EXPECT_EQ(table.number(i, "samples"), count[i]) << i;
                 if (of.brush) {
-                    EXPECT_NEAR(*table.number(i, "in focus"), focus[i], 1e-6) << i;
+                    EXPECT_NEAR(*table.number(i, of.inverted ? "samples in not warm" : "samples in warm"), focus[i],
+                                1e-6)
+                        << i;
                 }
             }
         }
@@ -172,7 +234,10 @@ TEST_F(ViewTables, ScatterplotsCountPairsInTheirBins) {
             const auto found = wanted.find({bin("x", t), bin("y", c)});
             ASSERT_NE(found, wanted.end()) << row;
             EXPECT_EQ(table.number(row, "samples"), found->second.first);
-            EXPECT_NEAR(*table.number(row, "in focus"), found->second.second, 1e-6);
+            if (of.brush) {
+                EXPECT_NEAR(*table.number(row, of.inverted ? "samples in not warm" : "samples in warm"),
+                            found->second.second, 1e-6);
+            }
         }
     }
 }

@@ -65,6 +65,43 @@ TEST(RegionStatistics, AgreeWithBruteForce) {
     }
 }
 
+TEST(RegionStatistics, SamplesCountByTheirDegreeOfInterest) {
+    const Lattice cc = test::ccLattice({9, 11, 19}, {0.5, 0.25, 2}, {1, -2, 3});
+    const Dataset data = cellData(cc, test::boxOf(cc));
+    const auto source = cellSource(data);
+    RegionStatisticsQuery query;
+    query.channels = {0, 2};
+    query.label = 1;
+    query.regions = {3, 1};
+    query.doi = [](std::span<const float> values, glm::dvec3 at) {
+        return !(values[1] > 1.5f) ? 0 : at.z < 20 ? 1 : 0.25;
+    };
+    const RegionStatistics got = computeRegionStatistics(*source, query);
+    const Field label = data.read(test::kRegion, 0, 0), o2 = data.read(test::kO2, 0, 0),
+                rho = data.read(test::kRho, 0, 0);
+    EXPECT_EQ(got.allSamples, double(cc.count())) << "of the grid";
+    for (std::size_t r = 0; r <= 2; ++r) {
+        double n = 0, any = 0, sum = 0, volume = 0, hi = -INFINITY;
+        forAll(cc, [&](glm::ivec3 at, std::size_t i) {
+            if (r < 2 && !(label.present(i) && label.value(i) == query.regions[r])) return;
+            const double share = !(float(rho.value(i)) > 1.5f) ? 0 : cc.position(at).z < 20 ? 1 : 0.25;
+            any += share;
+            if (!o2.present(i) || share == 0) return;
+            double cell = share;
+            for (int axis = 0; axis < 3; ++axis) cell *= test::cellLength(cc, data.info.bounds, at, axis);
+            n += share;
+            sum += cell * double(float(o2.value(i)));
+            volume += cell;
+            if (share >= 0.5) hi = std::max(hi, double(float(o2.value(i))));
+        });
+        const Summary& summary = r < 2 ? got.summary[r][0] : got.all[0];
+        EXPECT_NEAR(r < 2 ? got.samples[r] : any, any, 1e-9);
+        EXPECT_NEAR(summary.samples, n, 1e-9);
+        EXPECT_NEAR(summary.mean, sum / volume, 1e-9);
+        EXPECT_EQ(summary.max, hi);
+    }
+}
+
 TEST(RegionStatistics, PartsAreFoundByNameAndUnit) {
     const Lattice cc = test::ccLattice({3, 3, 3});
     const DatasetInfo info = cellData(cc, test::boxOf(cc)).info;

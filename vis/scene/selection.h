@@ -152,6 +152,8 @@ struct Brush {
 /// it: d is 0, also if the brush is inverted.
 struct Selection {
     std::vector<Brush> brushes;
+    std::string name;               ///< of what several brushes select together; "": made of their names
+    float focusOpacity = 0.3f;      ///< least opacity of samples with DOI 1, of a layer `kReferenceLength` thick
     float contextOpacity = 0.04f;   ///< opacity factor of samples with DOI 0
     float contextSaturation = 0.1f; ///< colour saturation of samples with DOI 0
     float contextLightness = 1;     ///< lightness of samples with DOI 0: 0 black, 1 unchanged, 2 white
@@ -162,6 +164,13 @@ struct Selection {
     static void describe(auto& self, auto&& visit) {
         visit(self.brushes,
               FieldInfo{.key = "brushes", .doc = "Brushes, in the order in which they are combined", .hidden = true});
+        visit(self.name, FieldInfo{.key = "name",
+                                   .doc = "Name of what several brushes select together; empty: made of their names",
+                                   .hidden = true});
+        visit(self.focusOpacity, FieldInfo{.key = "focusOpacity",
+                                           .doc = "Least opacity of what is brushed, where the transfer function hides "
+                                                  "it; 0: as the function says",
+                                           .range = Range{0, 1}});
         visit(self.contextOpacity,
               FieldInfo{.key = "contextOpacity", .doc = "Opacity of what is not brushed", .range = Range{0, 1}});
         visit(self.contextSaturation, FieldInfo{.key = "contextSaturation",

@@ -3,6 +3,9 @@
 #include "volume/analysis/statistics_sums.h"
 #include "volume/bricks/brick_columns.h"
 #include "volume/bricks/sample_cells.h"
+#include "volume/bricks/sample_position.h"
+
+#include <algorithm>
 
 namespace tessera::volume {
 
@@ -39,18 +42,24 @@ RegionStatistics computeRegionStatistics(const BrickSource& source, const Region
             BrickRegions out = empty();
             const auto columns = brickColumns(source, query.channels, query.time, index, query.level);
             const std::vector<double> label = brickColumn(source, query.label, query.time, index, query.level);
+            std::vector<float> values(channels);
             forSamples(grid, index, query.level, [&](std::size_t i, glm::ivec3 at) {
                 const double volume = cells.volume(at);
                 const int region = regions > 0 ? regionOf(query.regions, label[i]) : -1;
-                const auto count = [&](std::size_t r) {
-                    out.samples[r] += 1;
-                    out.volume[r] += volume;
+                double interest = 1;
+                if (query.doi) {
+                    for (std::size_t c = 0; c < channels; ++c) values[c] = float(columns[c][i]);
+                    interest = std::clamp(query.doi(values, samplePosition(grid, at, query.level)), 0.0, 1.0);
+                }
+                const auto count = [&](std::size_t r, double share) {
+                    out.samples[r] += share;
+                    out.volume[r] += share * volume;
                     for (std::size_t c = 0; c < channels; ++c)
                         if (!std::isnan(columns[c][i]))
-                            out.sums[r * channels + c].add(columns[c][i], shifts[c], volume, 1);
+                            out.sums[r * channels + c].add(columns[c][i], shifts[c], volume, interest);
                 };
-                if (region >= 0) count(std::size_t(region));
-                count(regions);
+                if (region >= 0) count(std::size_t(region), interest);
+                count(regions, 1);
             });
             return out;
         },

@@ -16,7 +16,7 @@ namespace tessera::app {
 
 struct TransferView {
     static constexpr std::string_view kType = "transfer";
-    std::string channel; ///< "" = the channel of the first layer
+    std::string channel; ///< or the name of a layer's own function; "" = that of the layer selected
     bool logHistogram = true;
     bool visibility = false;
     bool boundaries = false; ///< of a function that is a curve
@@ -24,7 +24,9 @@ struct TransferView {
     bool operator==(const TransferView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel,
-              FieldInfo{.key = "channel", .doc = "Parameter whose transfer function is edited", .refersTo = "channel"});
+              FieldInfo{.key = "channel",
+                        .doc = "Parameter whose transfer function is edited; empty: that of the layer selected",
+                        .refersTo = "channel"});
         visit(self.logHistogram, FieldInfo{"logHistogram", "Logarithmic counts"});
         visit(self.visibility, FieldInfo{"visibility", "Show which values contribute how much to the visible picture"});
         visit(self.boundaries, FieldInfo{"boundaries", "Compute the curve from boundaries, with an editable emphasis"});
@@ -149,7 +151,7 @@ inline constexpr std::tuple kViewKinds{
         {.title = "Messages", .help = "Messages of the program", .words = "log errors warnings output"}},
     ViewKind<StatisticsView, drawStatisticsView>{
         {.title = "Statistics",
-         .help = "Statistics of every parameter inside and outside the selection",
+         .help = "Statistics of every parameter in the selection and in the rest",
          .words = "mean average minimum maximum numbers table",
          .figure = true,
          .csv = true,
@@ -166,6 +168,13 @@ inline constexpr std::tuple kViewKinds{
                                                 .csv = true,
                                                 .leastWidth = 200,
                                                 .leastHeight = 130}},
+    ViewKind<ProbesView, drawProbesView>{{.title = "Probes",
+                                          .help = "Values at places and times that you keep",
+                                          .words = "points list table values cross-hair bookmarks",
+                                          .figure = true,
+                                          .csv = true,
+                                          .leastWidth = 210,
+                                          .leastHeight = 130}},
     ViewKind<ProfileView, drawProfileView>{{.title = "Line profile",
                                             .help = "Parameters along a line",
                                             .words = "plot graph chart probe cut",

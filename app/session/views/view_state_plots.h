@@ -54,13 +54,14 @@ struct ScatterMatrixView {
 };
 DrawView<ScatterMatrixView> drawScatterMatrixView;
 
-/// Count, volume, mean, spread and correlation of every parameter inside and outside of the selection.
+/// Count, volume, mean, spread and correlation of every parameter in the selection and in the rest.
 struct StatisticsView {
     static constexpr std::string_view kType = "statistics";
     std::vector<std::string> channels;
     std::string correlateWith; ///< "" = the first parameter
     bool byRegion = false;
-    std::string balance; ///< by region: what of this parameter flows in and out; "" = statistics
+    bool selected = false; ///< by region: of what is brushed alone
+    std::string balance;   ///< by region: what of this parameter flows in and out; "" = statistics
     bool operator==(const StatisticsView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
@@ -68,12 +69,22 @@ struct StatisticsView {
                                             .doc = "Parameter with which the correlation of the others is shown",
                                             .refersTo = "channel"});
         visit(self.byRegion, FieldInfo{"byRegion", "Statistics of every region instead of the selection"});
+        visit(self.selected, FieldInfo{"selected", "By region: count what is selected in every region alone"});
         visit(self.balance, FieldInfo{.key = "balance",
                                       .doc = "By region: inflow and outflow of this parameter instead of statistics",
                                       .refersTo = "optionalChannel"});
     }
 };
 DrawView<StatisticsView> drawStatisticsView;
+
+/// The values at the places of Session::probes.
+struct ProbesView {
+    static constexpr std::string_view kType = "probes";
+    std::vector<std::string> channels;
+    bool operator==(const ProbesView&) const = default;
+    static void describe(auto& self, auto&& visit) { visit(self.channels, kShownChannels); }
+};
+DrawView<ProbesView> drawProbesView;
 
 struct HistogramView {
     static constexpr std::string_view kType = "histogram";

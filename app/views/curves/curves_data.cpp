@@ -3,6 +3,7 @@
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/values/selection_text.h"
 #include "volume/base/error.h"
 #include "volume/field/time_pair.h"
 #include "volume/flow/flow_channels.h"
@@ -120,6 +121,7 @@ PlotCurvesQuery plotCurvesQuery(const CurvesView& view, const Session& session, 
     if (view.brushed) {
         query.brushes = brushedQuery(session, info, {}, {}, 1, false);
         query.brushes.time = {};
+        query.brushes.selection.name = selectionName(session);
     }
     return query;
 }
@@ -147,12 +149,12 @@ volume::Curves readCurves(const volume::BrickSource& source, const NumberOrigin&
 
 namespace {
 
-/// What statistics are of: ", in anode channel, of the selection"; "": everything.
+/// What statistics are of: ", in anode channel, of starved"; "": everything.
 std::string placeOf(const volume::DatasetInfo& info, const PlotCurvesQuery& asked) {
     std::string text;
     for (const int value : asked.regions)
         text += (text.empty() ? ", in " : " and ") + volume::labelName(volume::parameterOf(info, asked.label), value);
-    return text + (asked.brushes.selection.active() ? ", of the selection" : "");
+    return text + (asked.brushes.selection.active() ? ", of " + asked.brushes.selection.name : "");
 }
 
 } // namespace

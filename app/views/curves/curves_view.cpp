@@ -160,7 +160,8 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
                    {.name = "curves",
                     .figure = [curves, time = context.session.time](
                                   const PageForm& form, const Progress&) { return curvesDrawing(*curves, time, form); },
-                    .table = [curves](const Progress&) { return curvesTable(*curves); }},
+                    .table = [curves](const Progress&) { return curvesTable(*curves); },
+                    .brushed = query.brushes.selection.active()},
                    false, curvesOrigin(info, context.origin, query));
     }
 }

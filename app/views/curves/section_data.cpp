@@ -3,6 +3,7 @@
 #include "app/pane/plot.h"
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
+#include "app/values/selection_text.h"
 #include "volume/base/error.h"
 #include "volume/bricks/source_at_time.h"
 #include "volume/flow/flow_channels.h"
@@ -156,12 +157,13 @@ double errorOf(const SectionCurves& curves, std::size_t channel, const volume::S
 std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const SectionCurvesQuery& asked) {
     const bool selected = asked.selection.active();
     if (asked.regions.empty() || asked.label < 0)
-        return {{selected ? "selection" : "all",
+        return {{selected ? asked.selection.name : "all",
                  selected ? glm::vec3(0.90f, 0.45f, 0.05f) : glm::vec3(0.1f, 0.36f, 0.62f)}};
     std::vector<CurveLook> out;
     const volume::Parameter& label = volume::parameterOf(info, asked.label);
     for (const int value : asked.regions)
-        out.push_back({volume::labelName(label, value) + (selected ? ", selection" : ""), labelColor(label, value)});
+        out.push_back({volume::labelName(label, value) + (selected ? ", " + asked.selection.name : ""),
+                       labelColor(label, value)});
     return out;
 }
 
@@ -201,6 +203,7 @@ Table sectionTable(const volume::DatasetInfo& info, const SectionCurves& curves)
         return std::string(volume::kSectionWeightNames[static_cast<std::size_t>(asked.weight)]);
     });
     addColumn(table, rows, {.name = "samples"}, [&](const Row& row) { return valuesAt(row).samples; });
+    sayWeighted(table.columns.back());
     for (const SectionMeasure measure : kMeasures) {
         const std::string name(measure == SectionMeasure::Least  ? "min"
                                : measure == SectionMeasure::Most ? "max"

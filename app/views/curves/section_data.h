@@ -63,7 +63,7 @@ double measured(const volume::SectionValues& values, SectionMeasure measure, dou
 double errorOf(const SectionCurves& curves, std::size_t channel, const volume::SectionValues& values,
                SectionMeasure measure, double factor);
 
-/// Names and colours of the curves, by SectionCurvesQuery::regions: "all", "selection" or the regions'.
+/// Names and colours of the curves, by SectionCurvesQuery::regions: "all", the name of the selection or the regions'.
 struct CurveLook {
     std::string name;
     glm::vec3 color{0};

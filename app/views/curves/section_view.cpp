@@ -8,6 +8,7 @@
 #include "app/tools/profile_line.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
+#include "app/values/selection_text.h"
 #include "app/views/curves/section_data.h"
 #include "volume/flow/flow_channels.h"
 
@@ -93,6 +94,7 @@ SectionCurvesQuery queryOf(const ViewContext& context, const ProfileView& view, 
     const BrushedQuery brushed = brushedQuery(context.session, info, {}, {}, 1, false);
     query.time = brushed.time;
     query.selection = brushed.selection;
+    query.selection.name = selectionName(context.session);
     query.lenses = brushed.lenses;
     return query;
 }
@@ -158,7 +160,8 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
                         markSections(plots, placeOfCursor(*curves, plots, cursor));
                         return plotPage(plots, 0, form);
                     },
-                .table = [info, curves](const Progress&) { return sectionTable(info, *curves); }});
+                .table = [info, curves](const Progress&) { return sectionTable(info, *curves); },
+                .brushed = curves->query.selection.active()});
     drawOrigin(context, tools, shown);
 }
 

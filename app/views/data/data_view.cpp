@@ -1,12 +1,15 @@
 #include "app/data/sources.h"
 #include "app/edits/label_names.h"
 #include "app/pane/view_parts.h"
+#include "app/queries/extreme_query.h"
 #include "app/queries/focus_share.h"
 #include "app/queries/statistics_query.h"
 #include "app/session/label_colors.h"
+#include "app/tools/brush_list.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "app/values/selection_text.h"
 #include "app/views/data/derived_list.h"
 #include "app/views/data/selection_rows.h"
 #include "codec/archive/archive.h"
@@ -132,7 +135,15 @@ void editLabels(Session& session, const volume::Parameter& parameter) {
     ImGui::EndPopup();
 }
 
-void drawParameters(Session& session, const volume::DatasetInfo& info) {
+void drawParameters(ViewContext& context, const volume::DatasetInfo& info) {
+    Session& session = context.session;
+    const auto extreme = [&](const volume::Channel& channel, bool greatest, const std::string& text) {
+        ImGui::TableNextColumn();
+        const bool somewhere = context.goTo && !info.parameters[std::size_t(channel.parameter)].categorical;
+        if (!somewhere || text == "-") return textRight(text);
+        if (linkRight((greatest ? "max " : "min ") + channel.name, text, "Click: the cross-hair and time go there"))
+            context.goTo({.channel = channel.name, .greatest = greatest, .everyTime = true});
+    };
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_PadOuterX;
     if (!ImGui::BeginTable("parameters", 4, kFlags)) return;
@@ -166,10 +177,8 @@ void drawParameters(Session& session, const volume::DatasetInfo& info) {
                 labels += "\n" + std::to_string(label.value) + "  " + label.name;
             tooltip(labels.c_str());
         }
-        ImGui::TableNextColumn();
-        textRight(parameter.ranges.empty() ? "-" : formatNumber(range.lo, digits));
-        ImGui::TableNextColumn();
-        textRight(parameter.ranges.empty() ? "-" : formatNumber(range.hi, digits));
+        extreme(channel, false, parameter.ranges.empty() ? "-" : formatNumber(range.lo, digits));
+        extreme(channel, true, parameter.ranges.empty() ? "-" : formatNumber(range.hi, digits));
         ImGui::TableNextColumn();
         textRight(channel.magnitude       ? "computed"
                   : parameter.categorical ? "label"
@@ -194,8 +203,13 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
     ImGui::PushTextWrapPos(0);
     if (result->brushed) {
         const FocusShare share = focusShare(*result, info, context.numbers->grid());
-        ImGui::Text("%s samples in focus, %s%s", formatCount(std::round(share.focus)).c_str(), shareText(share).c_str(),
-                    statistics.level > 0 ? " (first estimate)" : "");
+        drawSelectionName(context.session);
+        const bool weighted = share.focus != std::round(share.focus);
+        ImGui::Text("%s, %s%s",
+                    (weighted ? formatNumber(share.focus, 0.1) + " weighted samples"
+                              : formatCount(share.focus) + (share.focus == 1 ? " sample" : " samples"))
+                        .c_str(),
+                    shareText(share).c_str(), statistics.level > 0 ? " (first estimate)" : "");
         double volume = 0;
         for (const volume::ChannelStatistics& channel : statistics.channels)
             volume = std::max(volume, channel.inside.volume);
@@ -211,10 +225,11 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
     const bool brushed = result->brushed;
     if (!ImGui::BeginTable("selection", brushed ? 3 : 2, kFlags)) return;
     ImGui::TableSetupColumn("Parameter", 0, 1);
-    ImGui::TableSetupColumn(brushed ? "In focus" : "Mean and range", 0, 1.2f);
-    if (brushed) ImGui::TableSetupColumn("Outside", 0, 1.2f);
+    ImGui::TableSetupColumn(brushed ? "Selected" : "Mean and range", 0, 1.2f);
+    if (brushed) ImGui::TableSetupColumn("Rest", 0, 1.2f);
+    const std::string name = selectionName(context.session);
     if (brushed)
-        tableHeader({"Parameter", "In focus", "Outside"});
+        tableHeader({"Parameter", name, restName(name)});
     else
         tableHeader({"Parameter", "Mean and range now"});
     // Mean above, range below: side by side they do not fit a narrow pane.
@@ -232,7 +247,11 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
         if (brushed) cell(row.outside);
     }
     ImGui::EndTable();
-    if (context.runCommand && ImGui::SmallButton("Open the full table")) context.runCommand("New: Statistics");
+    if (!context.runCommand) return;
+    if (ImGui::SmallButton("Open the full table")) context.runCommand("New: Statistics");
+    if (!brushed) return;
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Save as CSV...")) context.runCommand("Save the selection as a table...");
 }
 
 } // namespace
@@ -254,7 +273,7 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
         drawDerivedList(context, cache.derived);
     if (ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) drawSelection(context, result.get());
     if (ImGui::CollapsingHeader("Parameters over all times", ImGuiTreeNodeFlags_DefaultOpen))
-        drawParameters(context.session, info);
+        drawParameters(context, info);
     if (!cache.answers.failure().empty()) ImGui::TextWrapped("%s", cache.answers.failure().c_str());
     ImGui::EndChild();
 }

@@ -78,8 +78,10 @@ void drawLayerList(ViewContext& context, const volume::DatasetInfo& info, int& s
         const bool chosen = selected == static_cast<int>(i);
         const float height = ImGui::GetFrameHeight();
         const ImVec2 at = ImGui::GetCursorPos();
-        if (ImGui::Selectable("##row", chosen, ImGuiSelectableFlags_AllowItemOverlap, {0, height}))
+        if (ImGui::Selectable("##row", chosen, ImGuiSelectableFlags_AllowItemOverlap, {0, height})) {
             selected = static_cast<int>(i);
+            followSelectedLayer(context.session);
+        }
         if (ImGui::BeginDragDropSource()) {
             const int index = static_cast<int>(i);
             ImGui::SetDragDropPayload(kLayerPayload, &index, sizeof index);
@@ -134,6 +136,7 @@ void drawLayerButtons(ViewContext& context, const volume::DatasetInfo& info, int
             if (ImGui::MenuItem(kNames[kind], nullptr, false, kind != 3 || !firstVector(info).empty())) {
                 addLayer(context.session, *context.source, kind);
                 selected = static_cast<int>(layers.size()) - 1;
+                followSelectedLayer(context.session);
             }
         ImGui::EndPopup();
     }

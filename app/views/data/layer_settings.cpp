@@ -1,11 +1,15 @@
 #include "app/data/first_view.h"
+#include "app/edits/region_surface.h"
 #include "app/pane/view_parts.h"
 #include "app/session/own_functions.h"
 #include "app/tools/lens_list.h"
 #include "app/ui/parameter_widget.h"
 #include "app/views/data/layer_list.h"
 #include "app/views/data/task_settings.h"
+#include "volume/flow/flow_channels.h"
 
+#include <algorithm>
+#include <cmath>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -19,6 +23,24 @@ void drawLens(const WidgetContext& widgets, const Session& session, vis::Layer& 
     if (session.lenses.empty()) return;
     drawLabel(widgets, "Drawn", "Draw everywhere, or inside one lens only");
     chooseLens("##lens", session, layer.lens, "everywhere");
+}
+
+/// The region that a surface of a label is around, by its name; true for fields that such a surface does not have.
+bool drawRegion(const WidgetContext& widgets, vis::IsoLayer& surface, const volume::DatasetInfo& info,
+                const FieldInfo& field) {
+    const auto channel = info.findChannel(surface.channel);
+    if (!channel || (field.key != "value" && field.key != "method")) return false;
+    const volume::Parameter& label = volume::parameterOf(info, *channel);
+    if (!label.categorical) return false;
+    if (field.key == "method") return true; // polygons
+    drawLabel(widgets, "Region", "Region that the surface is around");
+    const int now = int(std::lround(surface.value));
+    if (!ImGui::BeginCombo("##region", volume::labelName(label, now).c_str())) return true;
+    for (const volume::Label& each : label.labels)
+        if (ImGui::Selectable((each.name + "##" + std::to_string(each.value)).c_str(), each.value == now))
+            aimAtRegion(surface, label, each.value);
+    ImGui::EndCombo();
+    return true;
 }
 
 /// Whether a layer has a transfer function of its own, which begins as the one that it had.
@@ -36,14 +58,19 @@ void drawOwnFunction(const WidgetContext& widgets, Session& session, vis::Layer&
 } // namespace
 
 void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::Layer& layer, const std::string& path) {
-    const std::string before = vis::shownChannel(layer.technique);
+    const std::string before = vis::shownChannel(layer.technique), coloured = channelOfFunction(layer.technique);
+    std::vector<OwnFunction> functions;
+    if (!layer.transfer.empty()) functions = ownFunctions(context.session);
     const WidgetContext place = widgets.at(path);
     drawMembers(valueOf(layer), place, [&](Value member, const FieldInfo& field) {
         if (field.key == "name") {
             drawLabel(widgets, "Name", "Name of the layer; empty: what it shows");
             ImGui::InputTextWithHint("##name", layerTitle(layer, context.source->info()).c_str(), &layer.name);
         } else if (field.key == "technique") {
-            drawMembers(member.inside(), place.under(field.key));
+            auto* const surface = std::get_if<vis::IsoLayer>(&layer.technique);
+            drawMembers(member.inside(), place.under(field.key), [&](Value, const FieldInfo& own) {
+                return surface && drawRegion(widgets, *surface, *widgets.info, own);
+            });
         } else if (field.key == "lens") {
             drawLens(widgets, context.session, layer);
         } else if (field.key == "transfer") {
@@ -55,6 +82,10 @@ void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::
     });
     const std::string now = vis::shownChannel(layer.technique);
     followChannel(layer.name, before, now);
+    if (channelOfFunction(layer.technique) != coloured) {
+        dropFormerFunction(context.session, layer, functions, context.source->info());
+        followSelectedLayer(context.session);
+    }
     if (now != before) aimLayer(context.session, *context.source, layer);
 }
 

@@ -19,10 +19,11 @@ std::string binText(const volume::Channel& channel, Range range, std::size_t bin
     return channel.name + " " + formatQuantity(middle, channel.unit, width);
 }
 
-std::string countText(double count, double total, double focus, bool brushed) {
+std::string countText(double count, double total, double focus, const std::string& selected) {
     std::string text = formatCount(count) + (count == 1 ? " sample" : " samples");
     if (total > 0) text += ", " + formatShare(count / total);
-    if (brushed && count > 0) text += "\n" + formatShare(std::min(1.0, focus / count)) + " of them in focus";
+    if (!selected.empty() && count > 0)
+        text += "\n" + formatShare(std::min(1.0, focus / count)) + " of them in " + selected;
     return text;
 }
 
@@ -157,7 +158,9 @@ std::string thirdText(const volume::DatasetInfo& info, const std::string& colorB
 }
 
 void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,
-               const StatisticsResult& result, const volume::DatasetInfo& info, const std::string& colorBy) {
+               const StatisticsResult& result, const volume::DatasetInfo& info, const std::string& colorBy,
+               const std::string& selection) {
+    const std::string selected = result.brushed ? selection : "";
     const glm::dvec2 at = frame.data(ImGui::GetIO().MousePos);
     const volume::Statistics& statistics = result.statistics;
     const auto bin = [](double value, Range range, std::size_t bins) {
@@ -170,7 +173,7 @@ void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row,
         const std::size_t bins = channel.histogram.count.size(), i = bin(at.x, channel.histogram.range, bins);
         text = binText(matrix.infos[column], channel.histogram.range, i, bins) + "\n" +
                countText(static_cast<double>(channel.histogram.count[i]), static_cast<double>(channel.all.samples),
-                         channel.histogram.focus[i], result.brushed);
+                         channel.histogram.focus[i], selected);
     } else {
         for (const volume::JointHistogram& joint : statistics.joint) {
             if (joint.x != static_cast<int>(std::min(column, row)) ||
@@ -181,9 +184,9 @@ void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row,
                 text = matrix.infos[row].name + " and " + matrix.infos[column].name + "\ncorrelation ";
                 text += std::isnan(joint.correlation) ? "not defined" : formatNumber(joint.correlation, 0.001);
                 if (result.brushed)
-                    text += "\nin focus " + (std::isnan(joint.focusCorrelation)
-                                                 ? std::string("not defined")
-                                                 : formatNumber(joint.focusCorrelation, 0.001));
+                    text += "\nin " + selected + " " +
+                            (std::isnan(joint.focusCorrelation) ? std::string("not defined")
+                                                                : formatNumber(joint.focusCorrelation, 0.001));
                 text += "\n" + formatCount(static_cast<double>(joint.samples)) + " samples have both";
             } else {
                 const std::size_t bx = bin(at.x, joint.xRange, bins), by = bin(at.y, joint.yRange, bins);
@@ -191,7 +194,7 @@ void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row,
                 text = binText(matrix.infos[column], joint.xRange, bx, bins) + "\n" +
                        binText(matrix.infos[row], joint.yRange, by, bins) + "\n" +
                        countText(static_cast<double>(joint.count[i]), static_cast<double>(joint.samples),
-                                 joint.focus[i], result.brushed);
+                                 joint.focus[i], selected);
                 if (i < joint.mean.size() && !std::isnan(joint.mean[i]))
                     text += "\n" + thirdText(info, colorBy, joint.mean[i]);
             }

@@ -32,9 +32,10 @@ void drawOutliers(ImDrawList& draw, const PlotFrame& frame, const volume::JointH
 /// A mean's colour in a plot: opaque; of labels grey where samples of several meet.
 ImU32 meanColor(const vis::TransferFunction& function, Range range, double mean);
 
-/// What is under the mouse in a cell.
+/// What is under the mouse in a cell; `selection`: the name of what is selected.
 void hoverText(const ScatterLayout& matrix, std::size_t column, std::size_t row, const PlotFrame& frame,
-               const StatisticsResult& result, const volume::DatasetInfo& info, const std::string& colorBy);
+               const StatisticsResult& result, const volume::DatasetInfo& info, const std::string& colorBy,
+               const std::string& selection);
 
 /// Colours of the mean of a third parameter, row 0 at the top; transparent where no sample has it. Merged like
 /// densityImage.

@@ -5,6 +5,7 @@
 #include "app/ui/keys.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
+#include "app/values/selection_text.h"
 #include "app/views/scatter/scatter_cells.h"
 #include "app/views/scatter/scatter_toolbar.h"
 #include "vis/gl/plot_texture.h"
@@ -114,15 +115,16 @@ Enlarged enlargedPlot(const ScatterLayout& matrix, const ScatterMatrixView& view
 
 /// A correlation cell of the upper triangle.
 void drawUpperCell(const ScatterCache& cache, const ScatterLayout& matrix, std::size_t column, std::size_t row,
-                   const StatisticsResult* result, ImU32 focus) {
+                   const StatisticsResult* result, const Session& session) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotFrame frame = matrix.cell(column, row);
     const int joint = result ? jointIndex(result->statistics, row, column) : -1;
     if (joint >= 0)
-        drawCorrelation(draw, frame, result->statistics.joint[static_cast<std::size_t>(joint)], result->brushed, focus);
+        drawCorrelation(draw, frame, result->statistics.joint[static_cast<std::size_t>(joint)], result->brushed,
+                        cache.shownFocus);
     draw.AddRect(frame.min, frame.max, plotColors().frame);
     if (ImGui::IsMouseHoveringRect(frame.min, frame.max) && ImGui::IsWindowHovered() && !cache.drag.active && result)
-        hoverText(matrix, column, row, frame, *result, volume::DatasetInfo{}, {});
+        hoverText(matrix, column, row, frame, *result, volume::DatasetInfo{}, {}, selectionName(session));
 }
 
 /// The wheel zooms about the mouse, the middle button pans, its double click shows all again; the same for every plot
@@ -222,7 +224,8 @@ bool drawPlot(ViewContext& context, ScatterCache& cache, ScatterMatrixView& view
                               channels.x, frame.width() - em() * 0.5f);
     }
     if (hovered && !cache.drag.active && result)
-        hoverText(matrix, column, row, frame, *result, context.numbers->info(), view.colorBy);
+        hoverText(matrix, column, row, frame, *result, context.numbers->info(), view.colorBy,
+                  selectionName(context.session));
     return clicked;
 }
 
@@ -256,7 +259,7 @@ void drawCells(ViewContext& context, ScatterCache& cache, ScatterMatrixView& vie
         for (std::size_t column = 0; column < matrix.size(); ++column) {
             if (large.covers(matrix, column, row)) continue;
             if (column > row) {
-                drawUpperCell(cache, matrix, column, row, result, cache.shownFocus);
+                drawUpperCell(cache, matrix, column, row, result, context.session);
                 continue;
             }
             const int joint = result ? jointIndex(result->statistics, column, row) : -1;

@@ -1,6 +1,7 @@
 #include "app/views/scatter/scatter_page.h"
 
 #include "app/pane/plot.h"
+#include "app/values/selection_text.h"
 #include "app/views/scatter/scatter_cells.h"
 
 #include <algorithm>
@@ -83,15 +84,16 @@ VectorPage matrixPage(const volume::DatasetInfo& info, const StatisticsResult& r
     return plotPage(cells, static_cast<int>(shown), plain, true);
 }
 
-Table matrixTable(const volume::DatasetInfo& info, const StatisticsResult& result) {
+Table matrixTable(const volume::DatasetInfo& info, const StatisticsResult& result, const std::string& selected) {
     Table table{.columns = {{.name = "x parameter"},
                             {.name = "x unit"},
                             {.name = "y parameter"},
                             {.name = "y unit"},
                             {.name = "x"},
                             {.name = "y"},
-                            {.name = "samples"},
-                            {.name = "in focus"}}};
+                            {.name = "samples"}}};
+    const bool brushed = result.brushed && !selected.empty();
+    if (brushed) table.columns.push_back({.name = "samples in " + selected});
     const auto text = [&](std::size_t column, const std::string& value) {
         table.columns[column].texts.push_back(value);
     };
@@ -107,9 +109,11 @@ Table matrixTable(const volume::DatasetInfo& info, const StatisticsResult& resul
             text(0, x.name), text(1, x.unit), text(2, y.name), text(3, y.unit);
             number(4, middle(joint.xRange, i % std::size_t(joint.bins)));
             number(5, middle(joint.yRange, i / std::size_t(joint.bins)));
-            number(6, double(joint.count[i])), number(7, joint.focus[i]);
+            number(6, double(joint.count[i]));
+            if (brushed) number(7, joint.focus[i]);
         }
     }
+    if (brushed) sayWeighted(table.columns.back());
     return table;
 }
 

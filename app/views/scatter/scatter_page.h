@@ -23,7 +23,7 @@ struct ScatterPageLook {
 VectorPage matrixPage(const volume::DatasetInfo& info, const StatisticsResult& result, std::size_t shown,
                       const ScatterPageLook& look, const PageForm& form);
 
-/// A row for each bin of a pair that holds samples.
-Table matrixTable(const volume::DatasetInfo& info, const StatisticsResult& result);
+/// A row for each bin of a pair that holds samples; `selected`: the name of what is selected.
+Table matrixTable(const volume::DatasetInfo& info, const StatisticsResult& result, const std::string& selected);
 
 } // namespace tessera::app

@@ -7,6 +7,7 @@
 #include "app/ui/number_field.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
+#include "app/values/selection_text.h"
 #include "app/views/data/derived_list.h"
 #include "app/views/scatter/scatter_page.h"
 
@@ -94,7 +95,9 @@ void drawMore(ViewContext& context, ToolRow& tools, ScatterMatrixView& view, con
          .figure = [info, result, look, count = shown.size()](
                        const PageForm& form, const Progress&) { return matrixPage(info, *result, count, look, form); },
          .whole = false,
-         .table = [info, result](const Progress&) { return matrixTable(info, *result); }});
+         .table = [info, result, selected = selectionName(context.session)](
+                      const Progress&) { return matrixTable(info, *result, selected); },
+         .brushed = result->brushed});
 }
 
 /// The end of the line: the share in focus, and the button that clears the brushes. Their space is reserved even
@@ -130,7 +133,7 @@ void drawShare(Session& session, ViewContext& context, ToolRow& tools, const Sta
             const bool counted = result && result->brushed;
             const std::string share =
                 counted ? shareText(focusShare(*result, context.numbers->info(), context.numbers->grid())) : "";
-            tooltip(("Samples that the brushes have in focus: " + share).c_str());
+            tooltip((selectionName(session) + ": " + share).c_str());
         }
     }
     ImGui::SetCursorPos(place);

@@ -1,5 +1,7 @@
 #include "app/views/shadow_cube/cube_legends.h"
 
+#include "app/values/selection_text.h"
+
 #include <algorithm>
 
 namespace tessera::app {
@@ -44,7 +46,7 @@ std::vector<ShownFace> shownFaces(const Session& session, const CubeFrame& frame
         const bool selection = wall.kind == WallKind::Shadow && session.selection.active();
         faces.push_back({i, *channel,
                          selection
-                             ? "shadow of the selection"
+                             ? "shadow of " + selectionName(session)
                              : kindText(wall.kind, frame.info, kCubeFaces[i].axis, frame.info.channel(*channel).name)});
     }
     std::vector<std::size_t> ambiguous;

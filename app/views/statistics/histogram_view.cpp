@@ -6,6 +6,7 @@
 #include "app/tools/brush_edit.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
+#include "app/values/selection_text.h"
 
 #include <cmath>
 
@@ -18,12 +19,14 @@ struct HistogramCache : ViewCache {
     BrushDrag drag;
 };
 
-Table histogramTable(const volume::Channel& channel, const volume::Histogram& histogram, bool brushed) {
+/// `selected`: the name of what is selected; "": nothing is.
+Table histogramTable(const volume::Channel& channel, const volume::Histogram& histogram, const std::string& selected) {
     Table table{.columns = {{.name = "parameter"},
                             {.name = "from", .unit = channel.unit},
                             {.name = "to", .unit = channel.unit},
                             {.name = "samples"}}};
-    if (brushed) table.columns.push_back({.name = "in focus"});
+    const bool brushed = !selected.empty();
+    if (brushed) table.columns.push_back({.name = "samples in " + selected});
     const auto n = static_cast<double>(histogram.count.size());
     const double width = (histogram.range.hi - histogram.range.lo) / n;
     for (std::size_t i = 0; i < histogram.count.size(); ++i) {
@@ -34,12 +37,14 @@ Table histogramTable(const volume::Channel& channel, const volume::Histogram& hi
         table.columns[3].numbers.push_back(static_cast<double>(histogram.count[i]));
         if (brushed) table.columns[4].numbers.push_back(histogram.focus[i]);
     }
+    if (brushed) sayWeighted(table.columns[4]);
     return table;
 }
 
-/// Bars of all samples, and over them of those in focus.
+/// Bars of all samples, and over them of those that are selected.
 struct HistogramLook {
-    bool logCounts = false, brushed = false;
+    bool logCounts = false;
+    std::string selected;  ///< the name of these; "": nothing is selected
     bool ownFocus = false; ///< the focus has the colour of its brush
     glm::vec3 all{0}, focus{0};
 };
@@ -52,14 +57,15 @@ Plot histogramPlot(const volume::Channel& channel, Range range, const volume::Hi
     double most = 1;
     if (histogram) {
         plot.series.push_back({.name = "all", .points = {}, .color = look.all, .bars = true});
-        if (look.brushed) plot.series.push_back({.name = "in focus", .points = {}, .color = look.focus, .bars = true});
+        const bool brushed = !look.selected.empty();
+        if (brushed) plot.series.push_back({.name = look.selected, .points = {}, .color = look.focus, .bars = true});
         const double width = (histogram->range.hi - histogram->range.lo) / double(histogram->count.size());
         for (std::size_t i = 0; i < histogram->count.size(); ++i) {
             const double at = histogram->range.lo + (static_cast<double>(i) + 0.5) * width;
             const auto count = static_cast<double>(histogram->count[i]);
             most = std::max(most, count);
             plot.series[0].points.push_back({at, height(count)});
-            if (look.brushed) plot.series[1].points.push_back({at, height(histogram->focus[i])});
+            if (brushed) plot.series[1].points.push_back({at, height(histogram->focus[i])});
         }
     }
     plot.y = {.title = look.logCounts ? "log10(1 + samples)" : "samples", .range = {0, height(most) * 1.04}};
@@ -90,7 +96,8 @@ std::vector<PlotBand> brushedBands(const vis::Selection& selection, const PlotCh
 HistogramLook histogramLook(const ViewContext& context, const HistogramView& view, bool brushed) {
     const PlotColors colors = plotColors();
     const ImU32 focus = focusColor(context.session);
-    return {view.logCounts, brushed, focus != colors.focus, inkOf(colors.bars), inkOf(focus)};
+    return {view.logCounts, brushed ? selectionName(context.session) : "", focus != colors.focus, inkOf(colors.bars),
+            inkOf(focus)};
 }
 
 constexpr float kOnWhite = 0.7f; ///< of colours of brushes, which are bright
@@ -103,7 +110,8 @@ HistogramLook onPage(HistogramLook look, bool dark) {
     return look;
 }
 
-void hover(const volume::Channel& channel, const StatisticsResult& result, const PlotFrame& frame) {
+void hover(const volume::Channel& channel, const StatisticsResult& result, const PlotFrame& frame,
+           const std::string& selected) {
     const volume::Histogram& histogram = result.statistics.channels.front().histogram;
     const double value = frame.data(ImGui::GetIO().MousePos).x;
     const auto bins = static_cast<double>(histogram.count.size());
@@ -114,7 +122,7 @@ void hover(const volume::Channel& channel, const StatisticsResult& result, const
     std::string text = channel.name + " " + formatQuantity(value, channel.unit, frame.perPixelX()) + "\n" +
                        formatCount(count) + " samples";
     if (result.brushed && count > 0)
-        text += "\n" + formatShare(std::min(1.0, histogram.focus[bin] / count)) + " of them in focus";
+        text += "\n" + formatShare(std::min(1.0, histogram.focus[bin] / count)) + " of them in " + selected;
     if (result.statistics.level > 0) text += "\n(estimated from a coarser level)";
     ImGui::SetTooltip("%s", text.c_str());
 }
@@ -147,7 +155,7 @@ void drawHistogramPlot(ViewContext& context, HistogramCache& cache, const Histog
     drawBrushes(draw, context.session.selection, frame, channels);
     drawAxis(draw, frame, AxisSide::Bottom, tall ? channel.name : "", tall ? channel.unit : "", origin.x,
              origin.x + room.x);
-    if (hovered && !cache.drag.active && result) hover(channel, *result, frame);
+    if (hovered && !cache.drag.active && result) hover(channel, *result, frame, selectionName(context.session));
 }
 
 void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channel& channel,
@@ -179,10 +187,11 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                             return plotPage({plot}, 1, form);
                         },
                     .table =
-                        [result, channel](const Progress&) {
-                            return histogramTable(channel, result->statistics.channels.front().histogram,
-                                                  result->brushed);
-                        }});
+                        [result, channel,
+                         selected = result->brushed ? selectionName(context.session) : std::string()](const Progress&) {
+                            return histogramTable(channel, result->statistics.channels.front().histogram, selected);
+                        },
+                    .brushed = result->brushed});
     }
     if (result) drawOrigin(context, tools, {result->query.channels.front()});
     if (context.session.selection.brushes.empty()) drawNote(tools, "drag to brush");

@@ -2,6 +2,7 @@
 
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
+#include "app/values/selection_text.h"
 #include "volume/base/error.h"
 #include "volume/base/unit_product.h"
 #include "volume/bricks/source_at_time.h"
@@ -25,7 +26,15 @@ volume::RegionStatistics countRegions(const std::shared_ptr<const volume::BrickS
     query.time = shown.time;
     if (asked.label >= 0)
         query.regions = volume::labelValues(*shown.source, asked.label, shown.time, progress.part(0, 0.2));
-    return volume::computeRegionStatistics(*shown.source, query, progress.part(0.2, 1));
+    if (asked.brushes.selection.active()) { // brushes ask for channels of their own, after the others
+        query.channels.insert(query.channels.end(), asked.brushes.channels.begin(), asked.brushes.channels.end());
+        query.doi = [doi = samplesQuery(asked.brushes, source->info(), 0).doi, first = channels.size()](
+                        std::span<const float> values, glm::dvec3 at) { return doi(values.subspan(first), at); };
+    }
+    volume::RegionStatistics out = volume::computeRegionStatistics(*shown.source, query, progress.part(0.2, 1));
+    out.all.resize(channels.size());
+    for (auto& summary : out.summary) summary.resize(channels.size());
+    return out;
 }
 
 std::string labelNamed(const volume::DatasetInfo& info, int label) {
@@ -68,7 +77,8 @@ volume::RegionStatistics together(const std::vector<OfChannel>& channels) {
 bool isKnown(const NumberOrigin& origin, const volume::DatasetInfo& info, const RegionQuery& asked) {
     const std::vector<bool> known = knownStatistics(origin, info, asked.channels, labelNamed(info, asked.label),
                                                     {info.times[std::size_t(asked.time.earlier)]});
-    return !asked.time.between() && std::ranges::all_of(known, [](bool each) { return each; });
+    return !asked.time.between() && !asked.brushes.selection.active() &&
+           std::ranges::all_of(known, [](bool each) { return each; });
 }
 
 RegionNumbers readRegions(const std::shared_ptr<const volume::BrickSource>& source, const NumberOrigin& origin,
@@ -79,7 +89,7 @@ RegionNumbers readRegions(const std::shared_ptr<const volume::BrickSource>& sour
     std::vector<std::optional<volume::RegionStatistics>> known(asked.channels.size());
     std::vector<int> others;
     for (std::size_t c = 0; c < asked.channels.size(); ++c) {
-        if (origin.computed && !asked.time.between())
+        if (origin.computed && !asked.time.between() && !asked.brushes.selection.active())
             known[c] = volume::knownStatistics(*origin.computed, time, label, {info.channel(asked.channels[c]).name});
         if (!known[c]) others.push_back(asked.channels[c]);
     }
@@ -99,7 +109,7 @@ RegionNumbers readRegions(const std::shared_ptr<const volume::BrickSource>& sour
 }
 
 std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQuery& asked,
-                                  const RegionNumbers& numbers) {
+                                  const RegionNumbers& numbers, const std::string& whole) {
     const volume::RegionStatistics& statistics = numbers.statistics;
     std::vector<RegionRow> rows;
     const std::vector<volume::Channel> channels = info.channels();
@@ -118,7 +128,7 @@ std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQ
             if (statistics.summary[r][c].samples > 0)
                 add(volume::labelName(label, value), value, labelColor(label, value), false, statistics.summary[r][c]);
         }
-        add("all", 0, glm::vec3(0.5f), true, statistics.all[c]);
+        add(whole, 0, glm::vec3(0.5f), true, statistics.all[c]);
     }
     return rows;
 }
@@ -141,6 +151,7 @@ Table regionTable(const std::vector<RegionRow>& rows, const std::string& lengthU
     add({.name = "unit", .shown = false}, &RegionRow::unit);
     add({.name = "region", .head = "Region"}, &RegionRow::region);
     add({.name = "samples", .head = "Samples", .kind = NumberKind::Count}, ofSummary(&volume::Summary::samples));
+    sayWeighted(table.columns.back());
     if (shares) {
         add({.name = "shareOfAll", .head = "Of all", .kind = NumberKind::Share}, &RegionRow::ofAll);
         add({.name = "shareOfExisting", .head = "Of its own", .kind = NumberKind::Share}, &RegionRow::ofExisting);

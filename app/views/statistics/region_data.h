@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/data/number_origin.h"
+#include "app/queries/statistics_query.h"
 #include "app/values/table.h"
 #include "volume/analysis/region_statistics.h"
 #include "volume/field/time_pair.h"
@@ -19,6 +20,7 @@ struct RegionQuery {
     std::vector<int> channels;
     int label = -1;
     volume::TimePair time;
+    BrushedQuery brushes = {}; ///< its channels and selection: samples count by their degree of interest
     bool operator==(const RegionQuery&) const = default;
 };
 
@@ -45,15 +47,16 @@ struct RegionRow {
     glm::vec3 color{0};
     bool all = false;        ///< the whole grid, not a region
     double ofAll = 0;        ///< share of all samples of the grid, 0..1
-    double ofExisting = 0;   ///< share of the samples where the parameter exists
+    double ofExisting = 0;   ///< share of the samples where the parameter exists, of those selected
     volume::Summary summary; ///< of the samples where the parameter exists
     Range range;             ///< of the parameter, for the digits of texts
     double error = 0;        ///< bound on the errors of the summary; 0: as computed; NaN: not known
 };
 
-/// By parameter, then regions in their order, then the whole. Regions where a parameter has no sample are left out.
+/// By parameter, then regions in their order, then the whole, which is called `whole`. Regions where a parameter has no
+/// sample are left out.
 std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQuery& query,
-                                  const RegionNumbers& numbers);
+                                  const RegionNumbers& numbers, const std::string& whole = "all");
 
 /// Whether some of the rows have a bound on their errors, so that tables have a column of these.
 bool showsErrors(const std::vector<RegionRow>& rows);

@@ -2,8 +2,10 @@
 #include "app/pages/table_page.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/async_query.h"
+#include "app/queries/extreme_query.h"
 #include "app/queries/statistics_query.h"
 #include "app/tables/table_view.h"
+#include "app/values/selection_text.h"
 #include "app/views/statistics/region_data.h"
 #include "volume/flow/flow_channels.h"
 
@@ -21,17 +23,14 @@ struct StatisticsCache : ViewCache {
     AsyncQuery<RegionBalanceQuery, Balance> balance;
 };
 
-/// Count and volume are of samples weighted by their degree of interest, like everything else.
+/// Which samples numbers are of. Count and volume are weighted by their degree of interest, like everything else.
 struct Part {
-    const char* name;
     volume::Summary volume::ChannelStatistics::*summary;
     double volume::JointHistogram::*correlation;
 };
-constexpr Part kAllSamples{"all", &volume::ChannelStatistics::all, &volume::JointHistogram::correlation};
-constexpr Part kInsideSelection{"inside", &volume::ChannelStatistics::inside,
-                                &volume::JointHistogram::focusCorrelation};
-constexpr Part kOutsideSelection{"outside", &volume::ChannelStatistics::outside,
-                                 &volume::JointHistogram::outsideCorrelation};
+constexpr Part kAllSamples{&volume::ChannelStatistics::all, &volume::JointHistogram::correlation};
+constexpr Part kInsideSelection{&volume::ChannelStatistics::inside, &volume::JointHistogram::focusCorrelation};
+constexpr Part kOutsideSelection{&volume::ChannelStatistics::outside, &volume::JointHistogram::outsideCorrelation};
 
 /// The joint histogram of two positions, null for a channel with itself.
 const volume::JointHistogram* jointOf(const volume::Statistics& statistics, std::size_t a, std::size_t b) {
@@ -68,7 +67,8 @@ std::string tableOrigin(const NumberOrigin& origin, const volume::DatasetInfo& i
 struct TableForm {
     std::size_t shown = 0;         ///< positions in the query's channels before this one
     std::vector<std::size_t> with; ///< positions of those that all are correlated with
-    bool whole = false;            ///< beside what is inside and outside of the selection
+    bool whole = false;            ///< beside what is selected and the rest
+    std::string selected = {};     ///< the name of what is selected
 };
 
 Table statisticsTable(const volume::DatasetInfo& info, const StatisticsResult& result, const TableForm& form) {
@@ -83,7 +83,9 @@ Table statisticsTable(const volume::DatasetInfo& info, const StatisticsResult& r
             RegionRow& row = rows.emplace_back();
             row.parameter = channelAt(i).name;
             row.unit = channelAt(i).unit;
-            row.region = part.name;
+            row.region = part.summary == kInsideSelection.summary    ? form.selected
+                         : part.summary == kOutsideSelection.summary ? restName(form.selected)
+                                                                     : "all";
             row.summary = result.statistics.channels[i].*part.summary;
             row.range = info.channelRange(channelAt(i));
         }
@@ -106,8 +108,8 @@ Table statisticsTable(const volume::DatasetInfo& info, const StatisticsResult& r
     if (!result.brushed) { // then all rows are of all samples
         std::ranges::find(table.columns, "region", &TableColumn::name)->shown = false;
         table.names = 1;
-    } else {
-        table.notes = {"inside and outside of the selection, samples weighted by their degree of interest"};
+    } else if (std::ranges::find(table.columns, "weightedSamples", &TableColumn::name) != table.columns.end()) {
+        table.notes = {"samples are weighted by their degree of interest"};
     }
     return table;
 }
@@ -127,16 +129,52 @@ ViewExport exportOf(const std::string& name, const std::shared_ptr<const Table>&
             .table = [table](const Progress&) { return *table; }};
 }
 
-/// The table of every region, without any brush.
-void drawRegionTable(Session& session, const volume::Parameter& label, const std::vector<RegionRow>& rows,
-                     const Table& table) {
+/// A table whose least and greatest values can be clicked: the cross-hair goes there. `ofRow`: what a row is of.
+TableLook goingToExtremes(ViewContext& context, std::function<ExtremeQuestion(std::size_t row)> ofRow) {
+    if (!context.goTo) return {};
+    return {.numberTip = [](std::size_t row, const TableColumn& column) -> std::string {
+                const bool extreme = column.name == "min" || column.name == "max";
+                return extreme && std::isfinite(column.numbers[row]) ? "Click: the cross-hair goes there" : "";
+            },
+            .numberClicked =
+                [goTo = context.goTo, ofRow = std::move(ofRow)](std::size_t row, const TableColumn& column) {
+                    ExtremeQuestion question = ofRow(row);
+                    question.greatest = column.name == "max";
+                    goTo(question);
+                }};
+}
+
+/// The table of what is selected and of the rest, or of all samples.
+void drawPartsTable(ViewContext& context, const volume::DatasetInfo& info, const StatisticsResult& numbers,
+                    const TableForm& form) {
+    const std::size_t parts = numbers.brushed ? 2 : 1;
+    const TableLook look = goingToExtremes(context, [&](std::size_t row) {
+        const int channel = numbers.query.channels[row / parts];
+        return ExtremeQuestion{.channel = info.channel(channel).name,
+                               .of = parts == 1         ? ExtremeOf::All
+                                     : row % parts == 0 ? ExtremeOf::Selected
+                                                        : ExtremeOf::Rest};
+    });
+    drawTable("statistics", statisticsTable(info, numbers, form), look);
+}
+
+/// The table of every region, of all samples or of those `selected`.
+void drawRegionTable(ViewContext& context, const volume::Parameter& label, const std::vector<RegionRow>& rows,
+                     const Table& table, bool selected) {
+    Session& session = context.session;
     const auto look = [&](std::size_t row) -> TableRowLook {
         if (rows[row].all) return {.faint = true};
         return {.color = rows[row].color,
                 .selected = regionBrushed(session, label, rows[row].value),
                 .tip = "Click to brush this region, or to remove the brush"};
     };
-    if (const auto clicked = drawTable("regions", table, {.row = look}))
+    TableLook going = goingToExtremes(context, [&](std::size_t row) {
+        ExtremeQuestion question{.channel = rows[row].parameter, .of = selected ? ExtremeOf::Selected : ExtremeOf::All};
+        if (!rows[row].all) question.region = rows[row].value;
+        return question;
+    });
+    going.row = look;
+    if (const auto clicked = drawTable("regions", table, going))
         toggleRegionBrush(session, label, rows[*clicked].value);
 }
 
@@ -201,34 +239,45 @@ bool drawRegions(ViewContext& context, ToolRow& tools, const std::string& pane, 
     const std::string by = "by " + name;
     if (tools.next(checkboxWidth(by.c_str()))) {
         ImGui::Checkbox(by.c_str(), &view.byRegion);
-        if (ImGui::IsItemHovered()) tooltip(("Numbers of every " + name + ", independent of the brushes").c_str());
+        if (ImGui::IsItemHovered()) tooltip(("Numbers of every " + name).c_str());
     }
     if (!view.byRegion) return false;
+    const std::string selection = context.session.selection.active() ? selectionName(context.session) : "";
+    if (const std::string in = "in " + selection; !selection.empty() && tools.next(checkboxWidth(in.c_str()))) {
+        ImGui::Checkbox((in + "##selected").c_str(), &view.selected);
+        if (ImGui::IsItemHovered()) tooltip(("Count what is selected in every " + name + " alone").c_str());
+    }
     chooseBalance(tools, info, view);
     if (const auto channel = view.balance.empty() ? std::nullopt : info.findChannel(view.balance)) {
         drawBalance(context, tools, pane, *channel, *label, cache);
         return true;
     }
     chooseChannels(tools, info, view.channels, shown);
-    const RegionQuery query{shown, *label, volume::timesAround(info.times, context.session.time)};
+    RegionQuery query{shown, *label, volume::timesAround(info.times, context.session.time)};
+    const bool selected = view.selected && !selection.empty();
+    if (selected) query.brushes = brushedQuery(context.session, info, {}, {}, 1, false);
     const auto numbers = cache.regions.get(
         context, context.numbers, {.key = "regions " + pane, .title = "Statistics by region", .quiet = true}, query,
         [origin = context.origin](const auto& source, const RegionQuery& asked, int, const Progress& progress) {
             return readRegions(source, origin, asked, progress);
         },
-        [](const RegionQuery& a, const RegionQuery& b) { return a.channels == b.channels; });
+        [](const RegionQuery& a, const RegionQuery& b) {
+            return a.channels == b.channels && a.brushes.selection.active() == b.brushes.selection.active();
+        });
     if (!numbers) {
         ImGui::TextDisabled("%s", cache.regions.failure().empty() ? "Counting..." : cache.regions.failure().c_str());
         return true;
     }
-    const std::vector<RegionRow> rows = regionRows(info, query, *numbers);
+    const std::vector<RegionRow> rows = regionRows(info, query, *numbers, selected ? selection : "all");
     const auto table = std::make_shared<Table>(regionTable(rows, info.lengthUnit, showsErrors(rows)));
     std::vector<bool> known;
     for (const int channel : shown) known.push_back(isKnown(context.origin, info, {{channel}, *label, query.time}));
     const std::string origin = originText(context.origin, info, shown, known);
-    exportMenu(context, tools, exportOf("regions", table), true, origin);
+    ViewExport made = exportOf("regions", table);
+    made.brushed = selected;
+    exportMenu(context, tools, std::move(made), true, origin);
     drawOriginText(context, tools, origin);
-    drawRegionTable(context.session, volume::parameterOf(info, *label), rows, *table);
+    drawRegionTable(context, volume::parameterOf(info, *label), rows, *table, selected);
     return true;
 }
 
@@ -236,7 +285,7 @@ bool drawRegions(ViewContext& context, ToolRow& tools, const std::string& pane, 
 
 void drawStatisticsView(ViewContext& context, const std::string& pane, StatisticsView& view) {
     if (!context.source) {
-        drawHint("No data", "Shows statistics of every parameter inside and outside the selection.");
+        drawHint("No data", "Shows statistics of every parameter in the selection and in the rest.");
         return;
     }
     const volume::DatasetInfo& info = context.numbers->info();
@@ -279,31 +328,33 @@ void drawStatisticsView(ViewContext& context, const std::string& pane, Statistic
     };
     BrushedQuery everyPair = query; // which files have
     everyPair.pairs = volume::allPairs(static_cast<int>(shown.size()));
-    TableForm whole{shown.size(), std::vector<std::size_t>(shown.size()), true};
+    const std::string selected = selectionName(context.session);
+    TableForm whole{shown.size(), std::vector<std::size_t>(shown.size()), true, selected};
     std::iota(whole.with.begin(), whole.with.end(), std::size_t(0));
     exportMenu(
         context, tools,
         {.name = "statistics",
-         .figure =
-             [exact, query, as = TableForm{shown.size(), {with}}](const PageForm& form, const Progress& progress) {
-                 return tablePage(exact(query, as, progress), form);
-             },
-         .table = [exact, everyPair, whole](const Progress& progress) { return exact(everyPair, whole, progress); }},
+         .figure = [exact, query, as = TableForm{shown.size(), {with}, false, selected}](
+                       const PageForm& form,
+                       const Progress& progress) { return tablePage(exact(query, as, progress), form); },
+         .table = [exact, everyPair, whole](const Progress& progress) { return exact(everyPair, whole, progress); },
+         .brushed = !selected.empty()},
         true, origin);
     if (!result) {
         ImGui::TextDisabled("%s", cache.answers.failure().empty() ? "Counting..." : cache.answers.failure().c_str());
         return;
     }
-    const std::string state =
-        std::string(result->brushed ? "weighted by the degree of interest" : "nothing is brushed") +
-        (result->statistics.level > 0 ? ", first estimate" : "");
+    const std::string state = std::string(result->brushed ? "in and outside of " + selected : "nothing is brushed") +
+                              (result->statistics.level > 0 ? ", first estimate" : "");
     drawNote(tools, state);
     drawOriginText(context, tools, origin);
     StatisticsResult numbers = *result;
     useKnown(context.origin, info, numbers.query, numbers.statistics);
     const TableForm form{std::min(shown.size(), numbers.statistics.channels.size()),
-                         {std::min(with, numbers.query.channels.size() - 1)}};
-    drawTable("statistics", statisticsTable(info, numbers, form));
+                         {std::min(with, numbers.query.channels.size() - 1)},
+                         false,
+                         selected};
+    drawPartsTable(context, info, numbers, form);
 }
 
 } // namespace tessera::app

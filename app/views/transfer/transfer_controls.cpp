@@ -4,6 +4,7 @@
 #include "app/pane/tool_row.h"
 #include "app/pane/view_parts.h"
 #include "app/session/own_functions.h"
+#include "app/session/shown_scene.h"
 #include "app/ui/number_field.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
@@ -161,12 +162,13 @@ void drawCurveControls(ToolRow& tools, TransferView& view, vis::TransferFunction
 }
 
 /// A choice among a parameter's function and those that layers and faces have of their own.
-void chooseFunction(const Session& session, TransferView& view, const std::string& channel) {
-    const bool own = ownFunction(session, view.channel).has_value();
-    if (!ImGui::BeginCombo("##function", own ? view.channel.c_str() : "shared")) return;
-    if (ImGui::Selectable("shared", !own)) view.channel = channel;
+void chooseFunction(Session& session, TransferView& view, const std::string& channel) {
+    const std::string now = functionName(session, view, channel), shared = "shared by " + channel;
+    const bool own = now != channel;
+    if (!ImGui::BeginCombo("##function", own ? now.c_str() : shared.c_str())) return;
+    if (ImGui::Selectable(shared.c_str(), !own)) view.channel = channel;
     for (const OwnFunction& each : ownFunctions(session))
-        if (ImGui::Selectable(each.name.c_str(), own && each.name == view.channel)) view.channel = each.name;
+        if (ImGui::Selectable(each.name.c_str(), own && each.name == now)) view.channel = each.name;
     ImGui::EndCombo();
 }
 
@@ -220,8 +222,10 @@ void drawColorTools(ViewContext& context, vis::TransferFunction& function, const
 
 } // namespace
 
-std::string functionName(const Session& session, const TransferView& view, const std::string& channel) {
-    return ownFunction(session, view.channel) ? view.channel : channel;
+std::string functionName(Session& session, const TransferView& view, const std::string& channel) {
+    const ShownScene scene(session, volumePane(session)); // has the layer selected
+    const std::string shown = shownFunction(session, view);
+    return ownFunction(session, shown) ? shown : channel;
 }
 
 void drawTransferControls(ViewContext& context, TransferView& view, const FindingPages& pages,

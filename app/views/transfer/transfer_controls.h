@@ -6,7 +6,7 @@
 namespace tessera::app {
 
 /// The name of the function that is edited: that of a layer or face alone, or the channel's.
-std::string functionName(const Session& session, const TransferView& view, const std::string& channel);
+std::string functionName(Session& session, const TransferView& view, const std::string& channel);
 
 /// The pages that begin with something found in the data when they are chosen.
 struct FindingPages {

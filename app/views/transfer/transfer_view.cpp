@@ -78,9 +78,10 @@ void drawTransferView(ViewContext& context, const std::string& pane, TransferVie
     }
     const volume::DatasetInfo& info = context.source->info();
     const auto channelNow = [&] {
-        const auto own = ownFunction(context.session, view.channel);
-        const std::string name = own ? own->channel : view.channel;
-        const ShownScene scene(context.session, volumePane(context.session)); // has the first layer
+        const ShownScene scene(context.session, volumePane(context.session)); // has the layer selected
+        const std::string shown = shownFunction(context.session, view);
+        const auto own = ownFunction(context.session, shown);
+        const std::string name = own ? own->channel : shown;
         return resolveChannel(info, context.session, name);
     };
     const auto channel = channelNow();

@@ -204,6 +204,7 @@ private:
     /// Draws lines and handles in space, besides the scene.
     void drawObjects(const SpaceFrame& space) {
         if (view_.showCursor && shown_.cursor && framed()) drawCursor3d(*list_, space, session_.cursor);
+        if (view_.showCursor && shown_.cursor && framed()) drawProbes(space);
         if (!shown_.outlines) return;
         drawSpaceBrushes(*list_, space, session_.selection);
         drawProfileLines(*list_, space, session_);
@@ -212,6 +213,17 @@ private:
         if (!context_.takesInput()) return; // nobody can drag there
         drawLensHandles(*list_, cache_.lens, space, session_);
         drawHandles(*list_, cache_.handles, space, session_, info_, view_.showLights);
+    }
+
+    /// A dot with its name at each probe.
+    void drawProbes(const SpaceFrame& space) {
+        for (const Probe& probe : session_.probes) {
+            const auto at = space.pixel(probe.position);
+            if (!at) continue;
+            list_->AddCircleFilled(*at, em() * 0.25f, plotColors().backdrop);
+            list_->AddCircleFilled(*at, em() * 0.18f, plotColors().cursor);
+            addTextWithBackdrop(*list_, {at->x + em() * 0.5f, at->y}, {0, 0.5f}, plotColors().text, probe.name.c_str());
+        }
     }
 
     LegendRoom legendRoom() const { return {picture_.min, max(), em() * 1.8f}; }
