@@ -9,7 +9,9 @@
 #include "volume/base/error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace tessera::app {
 
@@ -45,12 +47,12 @@ std::vector<glm::vec2> clearBelow(const std::vector<glm::vec2>& curve, double x)
 }
 
 /// The curve of a body; unchanged if there are no values. `from`: the share of the range below which nothing is shown.
-void showAsBody(vis::TransferFunction& function, const Session& session, const volume::BrickSource& source, int channel,
-                double from) {
+void showAsBody(vis::TransferFunction& function, bool ownColors, const Session& session,
+                const volume::BrickSource& source, int channel, double from) {
     const volume::DatasetInfo& info = source.info();
     const volume::Channel what = info.channel(channel);
     const bool sign = from == 0 && signMatters(info.channelRange(what), what.unit);
-    if (sign && function.autoRange) {
+    if (sign && function.autoRange && !ownColors) {
         function.colormap = vis::divergingFunction().colormap;
         function.aboutZero = true;
     }
@@ -63,9 +65,18 @@ void showAsBody(vis::TransferFunction& function, const Session& session, const v
     if (from > 0) function.opacity = clearBelow(function.opacity, from);
 }
 
+/// Share of the volume whose values are above a share of the range.
+double shareAbove(const Session& session, const volume::BrickSource& source, int channel, int time, double share) {
+    const Range range = source.info().channelRange(source.info().channel(channel));
+    const std::vector<double> count = bodyOf(session, source, channel, std::array{std::size_t(time)}, range).count;
+    const auto first = count.begin() + long(share * double(count.size()));
+    const double all = std::accumulate(count.begin(), count.end(), 0.0);
+    return all > 0 ? std::accumulate(first, count.end(), 0.0) / all : 0;
+}
+
 /// What a scan, or a field that looks like one, is made of; nothing for what varies smoothly. `background`: of a scan.
-std::optional<Materials> materialsShown(const volume::BrickSource& source, int channel, int time,
-                                        std::optional<double> background) {
+std::optional<Materials> materialsShown(const Session& session, const volume::BrickSource& source, int channel,
+                                        int time, std::optional<double> background) {
     const volume::Channel what = source.info().channel(channel);
     const Range range = source.info().channelRange(what);
     if (background) {
@@ -73,9 +84,12 @@ std::optional<Materials> materialsShown(const volume::BrickSource& source, int c
         if (!boundary || !hasMaterials(source, channel, time, *background)) return std::nullopt;
         return Materials{*background, (*boundary - range.lo) / (range.hi - range.lo)};
     }
-    if (auto materials = materialsOf(source, channel, time)) return materials;
     const bool whole = source.info().parameters[std::size_t(what.parameter)].type != volume::ScalarType::F32;
-    return whole ? classesOf(source, channel, time) : std::nullopt;
+    const auto materials = materialsOf(source, channel, time);
+    if (whole) return materials ? materials : classesOf(source, channel, time);
+    // Of a computed field the upper one is no object in surroundings where it takes most of the space.
+    return materials && shareAbove(session, source, channel, time, materials->boundary) < 0.5 ? materials
+                                                                                              : std::nullopt;
 }
 
 /// The curve of what is made of materials: all above the lower one.
@@ -104,14 +118,20 @@ bool aimFunction(Session& session, const volume::BrickSource& source, const std:
     const auto transfer = session.transfer.find(name);
     if (!found || transfer == session.transfer.end()) return false;
     const volume::Parameter& parameter = info.parameters[std::size_t(info.channel(*found).parameter)];
-    if (parameter.categorical || transfer->second != defaultSession(info, {}).transfer[name]) return false;
+    if (parameter.categorical) return false;
+    vis::TransferFunction untouched = defaultSession(info, {}).transfer[name];
+    const bool ownColors = transfer->second.colormap != untouched.colormap || !transfer->second.colors.empty();
+    untouched.colormap = transfer->second.colormap;
+    untouched.reversed = transfer->second.reversed;
+    untouched.colors = transfer->second.colors;
+    if (transfer->second != untouched) return false;
     try {
         const int time = info.nearestTime(session.time);
         const auto background = backgroundShare(source, *found, time);
-        if (const auto materials = materialsShown(source, *found, time, background))
+        if (const auto materials = materialsShown(session, source, *found, time, background))
             showAbove(transfer->second, *materials);
         else
-            showAsBody(transfer->second, session, source, *found, background.value_or(0));
+            showAsBody(transfer->second, ownColors, session, source, *found, background.value_or(0));
         return true;
     } catch (const Error&) { // a damaged brick: what the rest says is shown all the same
         return false;

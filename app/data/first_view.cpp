@@ -184,7 +184,7 @@ void aimFirstView(Session& session, const volume::BrickSource& source, double as
         session.camera.orientation = vis::firstOrientation(world);
     vis::fit(session.camera, world, aspect);
     if (session.layers.empty()) return;
-    constexpr float kFaint = 0.3f; // density of a volume that shows the flow inside
+    constexpr float kFaint = 0.1f; // density of a volume that shows the flow inside
     const bool flows = std::ranges::any_of(session.layers, [](const vis::Layer& layer) {
         return layer.visible && std::holds_alternative<vis::FlowLayer>(layer.technique);
     });

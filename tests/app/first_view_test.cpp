@@ -134,6 +134,13 @@ TEST(FirstView, AnOpacityThatSomebodyMadeStays) {
     const auto before = session.transfer;
     aimFirstView(session, *source, 1.5);
     EXPECT_EQ(session.transfer, before);
+    // Colours alone say nothing of opacity, and stay.
+    const auto field = computed("m", {-4, 7}, [](int x, int, int) { return x - 4; });
+    session = defaultSession(field->info(), {});
+    session.transfer["f"].colormap = "magma";
+    aimFirstView(session, *field, 1.5);
+    EXPECT_EQ(session.transfer["f"].colormap, "magma");
+    EXPECT_NE(session.transfer["f"].opacity, defaultSession(field->info(), {}).transfer["f"].opacity);
 }
 
 /// Two parameters at two times on the cube: "all" everywhere, "some" where `present` says so.
@@ -264,7 +271,7 @@ TEST(FirstView, AVectorAloneOpensWithItsFlowInAFaintVolume) {
     EXPECT_EQ(flow.vector, "same");
     EXPECT_EQ(flow.weight, "|same|") << "seeds lie where it flows";
     aimFirstView(session, *source, 1);
-    EXPECT_LE(std::get<vis::VolumeLayer>(session.layers[0].technique).density, 0.3f);
+    EXPECT_LE(std::get<vis::VolumeLayer>(session.layers[0].technique).density, 0.1f);
     // A curve that somebody made is meant as it is.
     session = defaultSession(source->info(), {});
     session.transfer.at("|same|").opacity = {{0, 0.1f}, {1, 0.1f}};

@@ -16,12 +16,12 @@ constexpr double kMostOpacity = 0.8;
 /// Of the emphasis 1: what the lowest value gets, and the least magnitude, which is next to nothing.
 constexpr double kOfLowest = 0.3, kOfLeast = 0.1;
 constexpr double kOccurs = 2e-5; ///< share of the volume from which on a bin counts as occupied
-constexpr double kExact = 0.12;  ///< of an opacity: the error of a point that is left out
+constexpr double kExact = 0.2;   ///< of an opacity: the error of a point that is left out
 
-/// Shares of the volume, smoothed by a triangle over a 64th of the range to either side, among the bins that are not
+/// Shares of the volume, smoothed by a triangle over a 40th of the range to either side, among the bins that are not
 /// empty: the ends of what occurs are no rarer for that.
 std::vector<double> sharesOf(std::span<const double> count, double all) {
-    const int bins = int(count.size()), reach = std::max(1, bins / 64);
+    const int bins = int(count.size()), reach = std::max(1, bins / 40);
     std::vector<double> out(count.size(), 0);
     for (int bin = 0; bin < bins; ++bin) {
         if (!(count[std::size_t(bin)] > kOccurs * all)) continue;
@@ -62,7 +62,7 @@ void addPoints(std::span<const glm::vec2> all, std::size_t from, std::size_t to,
     for (std::size_t i = from + 1; i < to; ++i) {
         const double share = double(all[i].x - all[from].x) / double(all[to].x - all[from].x);
         const double line = std::lerp(double(all[from].y), double(all[to].y), share);
-        const double error = std::abs(line - double(all[i].y)) / (kExact * double(all[i].y) + 0.004);
+        const double error = std::abs(line - double(all[i].y)) / (kExact * double(all[i].y) + 0.008);
         if (error > worst) worst = error, at = i;
     }
     if (at == 0) return;
