@@ -19,8 +19,8 @@ bool isQuick(const Session& session, const volume::BrickSource& source);
 std::vector<std::size_t> timesToLookAt(const Session& session, const volume::BrickSource& source);
 
 /// Chooses the opacity curve of a channel's function; a function that is not the default one but for its colours stays,
-/// as do those of labels. A scan, and what else is made of materials, shows all above its surroundings; values of both signs get
-/// diverging colours about 0, and all other fields are a translucent body in which every value is seen
+/// as do those of labels. A scan, and what else is made of materials, shows all above its surroundings; values of both
+/// signs get diverging colours about 0, and all other fields are a translucent body in which every value is seen
 /// (vis/transfer/body_opacity.h). Whether it chose one; if a brick is damaged, nothing changes.
 bool aimFunction(Session& session, const volume::BrickSource& source, const std::string& channel);
 
