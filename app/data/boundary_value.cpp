@@ -210,7 +210,7 @@ Moments momentsOf(const std::array<double, kValueBins>& count, int begin, int en
 }
 
 /// Samples in the bins around one.
-double around(const std::array<double, kValueBins>& count, int bin) {
+double samplesAround(const std::array<double, kValueBins>& count, int bin) {
     double sum = 0;
     for (int near = std::max(bin - 4, 0); near <= std::min(bin + 4, kValueBins - 1); ++near)
         sum += count[std::size_t(near)];
@@ -238,7 +238,7 @@ bool hasMaterials(const volume::BrickSource& source, int channel, int time, doub
     double least = std::numeric_limits<double>::infinity(), above = all;
     for (int bin = first; bin < kValueBins; above -= count[std::size_t(bin++)]) {
         if (above < kMost * all) return false;
-        const double here = around(count, bin);
+        const double here = samplesAround(count, bin);
         if (here > kLeastPeak * all && here > kRise * least) return true;
         least = std::min(least, here);
     }
@@ -265,9 +265,9 @@ std::optional<Materials> classesOf(const volume::BrickSource& source, int channe
     double below = 0, above = 0, valley = std::numeric_limits<double>::infinity();
     for (int bin = 0; bin < kValueBins; ++bin) {
         double& peak = bin < edge ? below : above;
-        peak = std::max(peak, around(count, bin));
+        peak = std::max(peak, samplesAround(count, bin));
     }
-    for (int bin = int(lower.mean); bin <= int(upper.mean); ++bin) valley = std::min(valley, around(count, bin));
+    for (int bin = int(lower.mean); bin <= int(upper.mean); ++bin) valley = std::min(valley, samplesAround(count, bin));
     if (valley > kValley * std::min(below, above)) return std::nullopt;
     const double start = std::min(lower.mean + 2 * lower.deviation, double(edge));
     return Materials{start / kValueBins, double(edge) / kValueBins};

@@ -13,7 +13,7 @@
 namespace tessera::app {
 namespace {
 
-constexpr glm::ivec2 kSize{160, 130};
+constexpr glm::ivec2 kPictureSize{160, 130};
 
 /// Where the body fills the box as far as rays go, all of it is seen and must be seen through; bodies that take a small
 /// part of the box are seen at most of their own.
@@ -36,8 +36,8 @@ void expectAllWhole(const OpenRequest& request, const std::string& name) {
     const volume::BrickSource& numbers = *opened.numbers;
     const volume::DatasetInfo& info = opened.source->info();
     Session first = opened.document.session;
-    fitTo(first, info, kSize);
-    expectWhole(measure(first, opened.source, numbers, kSize), name);
+    fitTo(first, info, kPictureSize);
+    expectWhole(measure(first, opened.source, numbers, kPictureSize), name);
     std::vector<double> times{info.times.front()};
     if (info.times.size() > 1) times.push_back(info.times.back());
     if (info.times.size() > 2) times.insert(times.begin() + 1, info.times[info.times.size() / 2]);
@@ -51,7 +51,7 @@ void expectAllWhole(const OpenRequest& request, const std::string& name) {
             }
         for (const double time : times) {
             session.time = time;
-            expectWhole(measure(session, opened.source, numbers, kSize),
+            expectWhole(measure(session, opened.source, numbers, kPictureSize),
                         name + ", " + channel.name + " at " + std::to_string(time));
         }
     }

@@ -13,7 +13,7 @@ namespace {
 constexpr int kBins = 128;
 constexpr double kLength = 0.4;
 
-std::vector<double> histogram(auto count) {
+std::vector<double> countsOf(auto count) {
     std::vector<double> out;
     for (int bin = 0; bin < kBins; ++bin) out.push_back(count((bin + 0.5) / kBins));
     return out;
@@ -32,9 +32,9 @@ double depthOf(const std::vector<double>& count, const std::vector<glm::vec2>& c
 }
 
 TEST(BodyOpacity, ABodyIsSeenAndSeenThrough) {
-    const auto even = histogram([](double) { return 1; });
-    const auto bulk = histogram([](double x) { return std::exp(-std::pow((x - 0.4) / 0.03, 2)) + 1e-4; });
-    const auto rising = histogram([](double x) { return x * x * x; });
+    const auto even = countsOf([](double) { return 1; });
+    const auto bulk = countsOf([](double x) { return std::exp(-std::pow((x - 0.4) / 0.03, 2)) + 1e-4; });
+    const auto rising = countsOf([](double x) { return x * x * x; });
     for (const auto& count : {even, bulk, rising}) {
         for (const Emphasis emphasis : {Emphasis::High, Emphasis::Magnitude}) {
             const auto curve = bodyOpacity(count, kLength, emphasis);
@@ -49,7 +49,7 @@ TEST(BodyOpacity, ABodyIsSeenAndSeenThrough) {
 
 TEST(BodyOpacity, RareValuesAreSeenAsWellAsCommonOnes) {
     // 99 % of the volume in the lowest quarter of the range.
-    const auto count = histogram([](double x) { return x < 0.25 ? 99.0 / 32 : 1.0 / 96; });
+    const auto count = countsOf([](double x) { return x < 0.25 ? 99.0 / 32 : 1.0 / 96; });
     const auto curve = bodyOpacity(count, kLength, Emphasis::High);
     EXPECT_GT(curveAt(curve, 0.6), 10 * curveAt(curve, 0.1));
     EXPECT_GT(depthOf(count, curve, 0.5, 0.75), 0.15);
@@ -59,13 +59,13 @@ TEST(BodyOpacity, RareValuesAreSeenAsWellAsCommonOnes) {
 }
 
 TEST(BodyOpacity, ShorterRaysMeetDenserBodies) {
-    const auto count = histogram([](double) { return 1; });
+    const auto count = countsOf([](double) { return 1; });
     const auto thick = bodyOpacity(count, 0.8, Emphasis::High), thin = bodyOpacity(count, 0.1, Emphasis::High);
     EXPECT_NEAR(std::log(1 - curveAt(thin, 0.5)) / std::log(1 - curveAt(thick, 0.5)), 8, 0.8);
 }
 
 TEST(BodyOpacity, ValuesThatDoNotOccurLieBetweenThoseThatDo) {
-    const auto count = histogram([](double x) { return x < 0.2 ? 30 : x > 0.8 && x < 0.9 ? 1 : 0; });
+    const auto count = countsOf([](double x) { return x < 0.2 ? 30 : x > 0.8 && x < 0.9 ? 1 : 0; });
     const auto curve = bodyOpacity(count, kLength, Emphasis::High);
     for (const double x : {0.3, 0.5, 0.7}) {
         EXPECT_GT(curveAt(curve, x), 0.8 * curveAt(curve, 0.15)) << x;
@@ -75,7 +75,7 @@ TEST(BodyOpacity, ValuesThatDoNotOccurLieBetweenThoseThatDo) {
 }
 
 TEST(BodyOpacity, SmallMagnitudesAreFaint) {
-    const auto count = histogram([](double x) { return std::exp(-std::pow((x - 0.5) / 0.1, 2)) + 0.01; });
+    const auto count = countsOf([](double x) { return std::exp(-std::pow((x - 0.5) / 0.1, 2)) + 0.01; });
     const auto curve = bodyOpacity(count, kLength, Emphasis::Magnitude);
     EXPECT_LT(curveAt(curve, 0.5), curveAt(curve, 0.1) / 10);
     EXPECT_NEAR(curveAt(curve, 0.1), curveAt(curve, 0.9), 0.15 * curveAt(curve, 0.9));
@@ -83,8 +83,8 @@ TEST(BodyOpacity, SmallMagnitudesAreFaint) {
 
 TEST(BodyOpacity, WithoutValuesALineIsLeft) {
     const std::vector<glm::vec2> line{{0.0f, 0.0f}, {1.0f, 0.8f}};
-    EXPECT_EQ(bodyOpacity(histogram([](double) { return 0; }), kLength, Emphasis::High), line);
-    EXPECT_EQ(bodyOpacity(histogram([](double) { return 1; }), 0, Emphasis::High), line);
+    EXPECT_EQ(bodyOpacity(countsOf([](double) { return 0; }), kLength, Emphasis::High), line);
+    EXPECT_EQ(bodyOpacity(countsOf([](double) { return 1; }), 0, Emphasis::High), line);
 }
 
 } // namespace
