@@ -41,6 +41,12 @@ signal() { # signal NAME ARGUMENTS...: of the Marschner-Lobb signal; ends on the
     picture_of signal "$@"
 }
 
+# As data open
+for model in fuel-cell planted marschner-lobb membrane casting; do
+    data=("$model")
+    [ "$model" != fuel-cell ] || data=(overview --set "$cell")
+    "$tessera" render "${data[@]}" -o "$out/opens-$model.png" --view volume --size "$size"
+done
 # How samples along a ray become one colour
 for style in composite maximum minimum average xray; do
     picture "style-$style" --set "/layers=[$(volume T "\"style\":\"$style\"")]"

@@ -189,6 +189,23 @@ void addPictureOptions(CLI::App& command, PictureOptions& options) {
     addAllowRemoteOption(command);
 }
 
+namespace {
+
+/// Fits the first view of data to the shape of a picture of it alone, unless its camera is stated.
+void fitToPicture(Opened& opened, const PictureOptions& options) {
+    const std::vector<std::string> views = viewsOf(options);
+    const auto stated = [](const std::string& setting) { return setting.starts_with("/camera"); };
+    if (!opened.firstView || views.size() != 1 || std::ranges::any_of(options.settings, stated)) return;
+    Session& session = opened.document.session;
+    const VolumeView* const view = volumeView(session, paneOf(session, views[0]));
+    const PictureForm form = formOf(options);
+    if (!view || view->camera || !(form.size.width > 0) || !(form.size.height > 0)) return;
+    vis::fit(session.camera, vis::worldFrame(opened.source->info(), session.stretch),
+             double(form.size.width) / double(form.size.height));
+}
+
+} // namespace
+
 Opened openForPicture(const PictureOptions& options, const Progress& progress) {
     OpenRequest request;
     request.paths = options.inputs;
@@ -221,6 +238,7 @@ Opened openForPicture(const PictureOptions& options, const Progress& progress) {
         if (!(data == opened.document.history.data())) opened = openWith(std::move(opened), data, progress);
         fitSession(opened.document.session, opened.source->info(), opened.messages);
     }
+    if (request.layout.empty()) fitToPicture(opened, options);
     if (!options.transfer.empty()) {
         const OwnFunctions own = loadOwnFunctions(stateFolder());
         opened.messages.insert(opened.messages.end(), own.messages.begin(), own.messages.end());

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <numeric>
 
 namespace tessera::app {
@@ -186,6 +187,90 @@ std::optional<Materials> materialsOf(const volume::BrickSource& source, int chan
     int top = lower.begin;
     while (top + 1 < lower.end && (passed += flat[std::size_t(top)]) < 0.99 * lower.count) ++top;
     return Materials{(top + 1.0) / kValueBins, (boundary - range.lo) / (range.hi - range.lo)};
+}
+
+namespace {
+
+/// Moments of a part of a histogram.
+struct Moments {
+    double count = 0, mean = 0, deviation = 0;
+};
+Moments momentsOf(const std::array<double, kValueBins>& count, int begin, int end) {
+    Moments out;
+    double squares = 0;
+    for (int bin = begin; bin < end; ++bin) {
+        out.count += count[std::size_t(bin)];
+        out.mean += bin * count[std::size_t(bin)];
+        squares += double(bin) * bin * count[std::size_t(bin)];
+    }
+    if (!(out.count > 0)) return out;
+    out.mean /= out.count;
+    out.deviation = std::sqrt(std::max(squares / out.count - out.mean * out.mean, 0.0));
+    return out;
+}
+
+/// Samples in the bins around one.
+double samplesAround(const std::array<double, kValueBins>& count, int bin) {
+    double sum = 0;
+    for (int near = std::max(bin - 4, 0); near <= std::min(bin + 4, kValueBins - 1); ++near)
+        sum += count[std::size_t(near)];
+    return sum;
+}
+
+} // namespace
+
+bool hasMaterials(const volume::BrickSource& source, int channel, int time, double background) {
+    constexpr double kFlat = 0.04;                               // of the range, from cell to cell
+    constexpr double kMost = 0.5, kLeastPeak = 0.005, kRise = 3; // of the samples; of what is least before
+    const Range range = source.info().channelRange(source.info().channel(channel));
+    if (!(range.hi > range.lo)) return false;
+    const int first = int(std::ceil(background * kValueBins));
+    std::array<double, kValueBins> count{};
+    double all = 0, flat = 0;
+    forGradients(source, channel, time, [&](double value, double gradient) {
+        const std::size_t bin = binOf(value, range);
+        if (int(bin) < first) return;
+        all += 1;
+        count[bin] += 1;
+        flat += gradient < kFlat * (range.hi - range.lo) ? 1 : 0;
+    });
+    if (flat > kMost * all) return true;
+    double least = std::numeric_limits<double>::infinity(), above = all;
+    for (int bin = first; bin < kValueBins; above -= count[std::size_t(bin++)]) {
+        if (above < kMost * all) return false;
+        const double here = samplesAround(count, bin);
+        if (here > kLeastPeak * all && here > kRise * least) return true;
+        least = std::min(least, here);
+    }
+    return false;
+}
+
+std::optional<Materials> classesOf(const volume::BrickSource& source, int channel, int time) {
+    constexpr double kLeastClass = 0.02, kValley = 0.4; // of the samples; of the lower peak
+    const Range range = source.info().channelRange(source.info().channel(channel));
+    if (!(range.hi > range.lo)) return std::nullopt;
+    std::array<double, kValueBins> count{};
+    forSamples(source, channel, time, source.grid().levelWithin(kQuickSamples), kEveryBrick,
+               [&](glm::ivec3, float value) { ++count[binOf(double(value), range)]; });
+    int edge = 0;
+    double most = 0;
+    const double all = std::accumulate(count.begin(), count.end(), 0.0);
+    for (int bin = 1; bin < kValueBins; ++bin) {
+        const Moments lower = momentsOf(count, 0, bin), upper = momentsOf(count, bin, kValueBins);
+        const double between = lower.count * upper.count * std::pow(upper.mean - lower.mean, 2);
+        if (between > most) most = between, edge = bin;
+    }
+    const Moments lower = momentsOf(count, 0, edge), upper = momentsOf(count, edge, kValueBins);
+    if (std::min(lower.count, upper.count) < kLeastClass * all) return std::nullopt;
+    double below = 0, above = 0, valley = std::numeric_limits<double>::infinity();
+    for (int bin = 0; bin < kValueBins; ++bin) {
+        double& peak = bin < edge ? below : above;
+        peak = std::max(peak, samplesAround(count, bin));
+    }
+    for (int bin = int(lower.mean); bin <= int(upper.mean); ++bin) valley = std::min(valley, samplesAround(count, bin));
+    if (valley > kValley * std::min(below, above)) return std::nullopt;
+    const double start = std::min(lower.mean + 2 * lower.deviation, double(edge));
+    return Materials{start / kValueBins, double(edge) / kValueBins};
 }
 
 std::optional<double> middleValue(const volume::BrickSource& source, int channel, int time) {

@@ -31,6 +31,17 @@ struct Materials {
 /// Throws Error when a brick is damaged.
 std::optional<Materials> materialsOf(const volume::BrickSource& source, int channel, int time);
 
+/// Whether the object of a scan is made of materials rather than varying smoothly: above the background (a share of the
+/// range) most samples lie where little changes, or around values that are far more common than some between them and
+/// the background. Throws Error when a brick is damaged.
+bool hasMaterials(const volume::BrickSource& source, int channel, int time, double background);
+
+/// Two classes of whole numbers that both reach the faces of the box, such as fibres and the air between them: the
+/// boundary is that of the classes that differ most (N. Otsu: A threshold selection method from gray-level histograms,
+/// 1979), which neither bright nor dark rims of phase contrast move. `below` is two standard deviations above the lower
+/// class. nullopt: the histogram has no valley between two peaks. Throws Error when a brick is damaged.
+std::optional<Materials> classesOf(const volume::BrickSource& source, int channel, int time);
+
 /// A value for a surface in a field without such boundaries: the middle between the 2 % and 98 % quantiles; nullopt:
 /// these are equal, or there is no sample. Throws Error when a brick is damaged.
 std::optional<double> middleValue(const volume::BrickSource& source, int channel, int time);

@@ -2,16 +2,19 @@
 
 #include "app/data/boundary_value.h"
 #include "app/data/coarse_samples.h"
+#include "app/data/first_curve.h"
+#include "app/data/value_body.h"
+#include "app/edits/multiples.h"
 #include "app/edits/region_surface.h"
-#include "codec/archive/archive.h"
-#include "codec/remote/address.h"
-#include "vis/transfer/tail_opacity.h"
+#include "app/ui/time_text.h"
 #include "volume/base/error.h"
 #include "volume/reconstruct/probe.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <limits>
+#include <numeric>
+#include <span>
 
 namespace tessera::app {
 
@@ -46,99 +49,78 @@ std::optional<glm::dvec3> middleOfSamples(const volume::BrickSource& source, int
     return glm::clamp(best, source.info().bounds.lo, source.info().bounds.hi);
 }
 
-constexpr int kViewBins = 256;
-/// Where the opacity of materials begins, between the lower one (0) and the strongest boundary (1).
-constexpr double kBelowBoundary = 0.4;
-/// Share of the grid's samples (absent ones included) that should be visible at first: fewer are hard to find in the
-/// box, more hide what is behind them.
-constexpr double kLeastSeen = 0.02, kMostSeen = 0.2;
+/// Share of the grid's samples (absent ones included) that should be visible: fewer are hard to find in the box.
+constexpr double kLeastSeen = 0.02;
+/// Opacity from which on a value counts as visible.
+constexpr double kSeenOpacity = 0.1;
 
-/// Histogram of a coarse level over `range`, and its number of samples including absent ones.
-struct Occurrence {
-    std::vector<std::uint64_t> count = std::vector<std::uint64_t>(kViewBins, 0);
-    std::uint64_t places = 0;
-};
-
-Occurrence occurrenceOf(const volume::BrickSource& source, int channel, int time, Range range) {
-    Occurrence out;
+/// Share of the grid's samples whose opacity is at least kSeenOpacity.
+double seenShare(const volume::BrickSource& source, int channel, int time, Range range,
+                 std::span<const glm::vec2> opacity) {
     const int level = source.grid().levelWithin(kQuickSamples);
     const auto all = [](glm::ivec3, glm::ivec3) { return true; };
+    double seen = 0;
     forSamples(source, channel, time, level, all, [&](glm::ivec3, float value) {
-        const double share = (value - range.lo) / (range.hi - range.lo);
-        ++out.count[static_cast<std::size_t>(std::clamp(share * kViewBins, 0.0, kViewBins - 1.0))];
+        seen += vis::curveAt(opacity, (double(value) - range.lo) / (range.hi - range.lo)) >= kSeenOpacity;
     });
-    const glm::i64vec3 size(source.grid().levelSamples(level));
-    out.places = static_cast<std::uint64_t>(size.x * size.y * size.z);
-    return out;
+    const glm::dvec3 size(source.grid().levelSamples(level));
+    return seen / (size.x * size.y * size.z);
 }
 
-/// Whether values are substantially on both sides of 0, and 0 is meaningful, which it is not for temperatures.
-bool signMatters(Range range, const std::string& unit) {
-    const double least = std::min(-range.lo, range.hi);
-    return least > 0.1 * std::max(-range.lo, range.hi) && unit != "degC" && unit != "\u00b0C" && unit != "C";
+/// Parts of the range of a channel that hold values at a time, in 256; 0: it has one value everywhere, or none.
+double variety(const Session& session, const volume::BrickSource& source, int channel, std::size_t time) {
+    constexpr double kSame = 0.998; // of the volume
+    const Range range = source.info().channelRange(source.info().channel(channel));
+    const std::vector<double> count = bodyOf(session, source, channel, std::array{time}, range).count;
+    const double all = std::accumulate(count.begin(), count.end(), 0.0);
+    return all > 0 && *std::ranges::max_element(count) < kSame * all ? binsFilled(count) : 0;
 }
 
-/// The initial opacity curve of a computed field; unchanged if there are no values.
-void showTails(vis::TransferFunction& function, const volume::BrickSource& source, int channel, int time) {
-    const volume::DatasetInfo& info = source.info();
-    const volume::Channel what = info.channels()[static_cast<std::size_t>(channel)];
-    const bool sign = signMatters(info.channelRange(what), what.unit);
-    if (sign && function.autoRange) {
-        function.colormap = vis::divergingFunction().colormap;
-        function.aboutZero = true;
-    }
-    const Range range = vis::effectiveRange(function, info.channelRange(what));
-    if (!(range.hi > range.lo)) return;
-    const Occurrence occurrence = occurrenceOf(source, channel, time, range);
-    if (sign) {
-        function.opacity = vis::signedTailOpacity(occurrence.count, kMostSeen);
-        return;
-    }
-    const double seen = vis::seenShare(occurrence.count, occurrence.places, function.opacity);
-    if (seen >= kLeastSeen && seen <= kMostSeen) return;
-    function.opacity = vis::tailOpacity(occurrence.count, kMostSeen);
-    vis::seeAtLeast(function.opacity, occurrence.count, occurrence.places, kLeastSeen);
-}
-
-/// Chooses the opacity curve of a channel from its values, unless its function was changed.
-void chooseCurve(Session& session, const volume::BrickSource& source, int channel, const std::string& name, int time) {
-    const volume::DatasetInfo& info = source.info();
-    const auto transfer = session.transfer.find(name);
-    if (transfer == session.transfer.end() || transfer->second != defaultSession(info, {}).transfer[name]) return;
-    const volume::Channel what = info.channels()[static_cast<std::size_t>(channel)];
-    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(what.parameter)];
-    if (parameter.categorical) return;
-    const Range range = info.channelRange(what);
-    std::optional<Materials> materials;
-    if (const auto share = backgroundShare(source, channel, time)) {
-        const auto boundary = boundaryValue(source, channel, time);
-        materials = {*share, boundary ? (*boundary - range.lo) / (range.hi - range.lo) : *share};
-    } else {
-        materials = materialsOf(source, channel, time);
-    }
-    if (materials) {
-        const double above = std::max(materials->boundary - materials->below, 0.0);
-        const float x = static_cast<float>(materials->below + kBelowBoundary * above);
-        transfer->second.opacity = {{0.0f, 0.0f}, {x, 0.0f}, {1.0f, 0.8f}};
-    } else if (parameter.type == volume::ScalarType::F32) {
-        showTails(transfer->second, source, channel, time);
-    }
-}
-
-void aimAtSamples(Session& session, const volume::BrickSource& source, int channel, const std::string& name, int time) {
-    const volume::ProbeValue here = volume::probeChannel(source, channel, session.cursor, time);
-    if (!here.interpolated) session.cursor = middleOfSamples(source, channel, time).value_or(session.cursor);
-    chooseCurve(session, source, channel, name, time);
+/// The layers of one channel show another.
+void showChannel(Session& session, const std::string& from, const std::string& to) {
+    for (vis::Layer& layer : session.layers)
+        std::visit(
+            [&](auto& technique) {
+                if (technique.channel != from) return;
+                technique.channel = to;
+                if (layer.name.starts_with(from)) layer.name.replace(0, from.size(), to);
+            },
+            layer.technique);
 }
 
 } // namespace
 
-void aimFunction(Session& session, const volume::BrickSource& source, const std::string& name) {
+void showWhatVaries(Session& session, const volume::BrickSource& source, std::vector<std::string>& messages) {
+    constexpr std::size_t kTimes = 5;
+    constexpr double kMore = 1.25; // of what the first time shows
     const volume::DatasetInfo& info = source.info();
-    const auto channel = info.findChannel(name);
-    if (!channel) return;
+    if (session.layers.empty() || !isQuick(session, source)) return;
+    const std::string first = vis::shownChannel(session.layers.front().technique);
+    const auto varies = [&](int channel) {
+        return std::ranges::any_of(timesToLookAt(session, source),
+                                   [&](std::size_t time) { return variety(session, source, channel, time) > 0; });
+    };
     try {
-        chooseCurve(session, source, *channel, name, info.nearestTime(session.time));
+        auto shown = info.findChannel(first);
+        if (!shown) return;
+        if (!varies(*shown))
+            for (const int other : scalarChannels(info))
+                if (other != *shown && varies(other)) {
+                    showChannel(session, first, info.channel(other).name);
+                    shown = other;
+                    break;
+                }
+        if (timesToLookAt(session, source).size() < 2) return;
+        const std::size_t begin = std::size_t(info.nearestTime(session.time));
+        const double now = variety(session, source, *shown, begin);
+        std::size_t best = begin;
+        double most = now * kMore;
+        for (const std::size_t time : spreadTimes(info.times.size(), kTimes))
+            if (const double here = variety(session, source, *shown, time); here > most) most = here, best = time;
+        if (best == begin) return;
+        session.time = info.times[best];
+        messages.push_back(info.channel(*shown).name + " varies more at " + timeText(info, session.time) +
+                           ", which is shown, than at the first time");
     } catch (const Error&) { // a damaged brick: what the rest says is shown all the same
     }
 }
@@ -158,8 +140,7 @@ void showLastIfEmpty(Session& session, const volume::BrickSource& source, std::v
     const Range range = vis::effectiveRange(function, info.channelRange(info.channel(*channel)));
     if (function.kind != vis::TransferKind::Curve || !(range.hi > range.lo)) return;
     const auto seen = [&](double time) {
-        const Occurrence occurrence = occurrenceOf(source, *channel, info.nearestTime(time), range);
-        return vis::seenShare(occurrence.count, occurrence.places, function.opacity);
+        return seenShare(source, *channel, info.nearestTime(time), range, function.opacity);
     };
     try {
         const double now = seen(session.time), last = info.times.back();
@@ -169,18 +150,6 @@ void showLastIfEmpty(Session& session, const volume::BrickSource& source, std::v
     } catch (const Error&) { // a damaged brick: the first time is shown
     }
 }
-
-namespace {
-
-/// Whether a coarse level of the data can be read while the user waits.
-bool isQuick(const Session& session, const volume::BrickSource& source) {
-    constexpr std::size_t kMost = std::size_t(1) << 22; // samples
-    const auto& files = session.data.files;
-    if (!files.empty() && codec::isRemote(files.front().absolutePath)) return false;
-    return source.grid().lattice.count() <= kMost || dynamic_cast<const codec::Archive*>(&source);
-}
-
-} // namespace
 
 void aimLayer(Session& session, const volume::BrickSource& source, vis::Layer& layer) {
     const volume::DatasetInfo& info = source.info();
@@ -219,12 +188,20 @@ void aimFirstView(Session& session, const volume::BrickSource& source, double as
         session.camera.orientation = vis::firstOrientation(world);
     vis::fit(session.camera, world, aspect);
     if (session.layers.empty()) return;
-    const std::string name = vis::shownChannel(session.layers.front().technique);
-    const auto channel = info.findChannel(name);
+    constexpr float kFaint = 0.1f; // density of a volume that shows the flow inside
+    const bool flows = std::ranges::any_of(session.layers, [](const vis::Layer& layer) {
+        return layer.visible && std::holds_alternative<vis::FlowLayer>(layer.technique);
+    });
+    for (vis::Layer& layer : session.layers)
+        if (auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique); volume && layer.transfer.empty())
+            if (aimFunction(session, source, volume->channel) && flows)
+                volume->density = std::min(volume->density, kFaint);
+    const auto channel = info.findChannel(vis::shownChannel(session.layers.front().technique));
     if (!channel) return;
     const int time = info.nearestTime(session.time);
     try {
-        aimAtSamples(session, source, *channel, name, time);
+        const volume::ProbeValue here = volume::probeChannel(source, *channel, session.cursor, time);
+        if (!here.interpolated) session.cursor = middleOfSamples(source, *channel, time).value_or(session.cursor);
     } catch (const Error&) { // a damaged brick: what the rest says is shown all the same
     }
 }

@@ -281,6 +281,7 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, const OpenR
         session = applyLayout(*layout, info, data, opened.messages);
     } else {
         session = defaultSession(info, data);
+        showWhatVaries(session, *opened.numbers, opened.messages);
     }
     if (layout && !sameData(layout->session.data, data)) showLastIfEmpty(session, *opened.numbers, opened.messages);
     if (!layout || !sameData(layout->session.data, data)) aimFirstView(session, *opened.numbers, firstAspect(info));

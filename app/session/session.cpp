@@ -160,15 +160,26 @@ std::string layerName(const vis::Layer& layer) {
     return std::get<vis::VolumeLayer>(layer.technique).channel + " volume";
 }
 
-std::string firstChannel(const volume::DatasetInfo& info) {
+std::vector<int> scalarChannels(const volume::DatasetInfo& info) {
     const auto channels = info.channels();
-    for (const volume::Channel& channel : channels) {
-        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
-        const Range range = info.channelRange(channel);
-        if (!parameter.categorical && parameter.components == 1 && range.hi > range.lo) return channel.name;
+    std::vector<int> out;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        const volume::Parameter& parameter = info.parameters[std::size_t(channels[i].parameter)];
+        const Range range = info.channelRange(channels[i]);
+        if (!parameter.categorical && parameter.components == 1 && range.hi > range.lo) out.push_back(int(i));
     }
-    for (const volume::Channel& channel : channels)
-        if (!info.parameters[static_cast<std::size_t>(channel.parameter)].categorical) return channel.name;
+    return out;
+}
+
+std::string firstChannel(const volume::DatasetInfo& info) {
+    if (const std::vector<int> scalars = scalarChannels(info); !scalars.empty()) return info.channel(scalars[0]).name;
+    const auto channels = info.channels();
+    for (const bool magnitude : {true, false})
+        for (const volume::Channel& channel : channels) {
+            const volume::Parameter& parameter = info.parameters[std::size_t(channel.parameter)];
+            const bool whole = parameter.components > 1 && channel.component == parameter.components;
+            if (!parameter.categorical && (whole || !magnitude)) return channel.name;
+        }
     return channels.empty() ? std::string() : channels.front().name;
 }
 
@@ -200,10 +211,16 @@ Session defaultSession(const volume::DatasetInfo& info, const DataRef& data) {
                                 : !(size.y > 0) ? vis::SliceOrientation::Y
                                                 : vis::SliceOrientation::X;
         session.layers.push_back({channel, !flat, vis::VolumeLayer{.channel = channel}});
+        // Where there is nothing but a vector, its flow is what there is to see.
+        const std::string vector = flat || !scalarChannels(info).empty() ? std::string() : firstVector(info);
+        if (!vector.empty())
+            session.layers.push_back(
+                {vector + " flow", true, vis::FlowLayer{.vector = vector, .channel = channel, .weight = channel}});
         session.layers.push_back({channel + " slice", flat, slice});
     }
     const auto channels = info.channels();
-    static constexpr std::string_view maps[] = {"viridis", "inferno", "cividis", "plasma"};
+    // None that begins in black, which is not seen on a dark ground.
+    static constexpr std::string_view maps[] = {"viridis", "plasma", "cividis"};
     std::size_t next = 0;
     colorDifferences(session);
     for (const volume::Channel& each : channels) {

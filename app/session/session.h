@@ -233,7 +233,11 @@ vis::Scene sceneOf(const Session& session);
 /// The name of the first parameter with three components, "" if there is none.
 std::string firstVector(const volume::DatasetInfo& info);
 
-/// The channel to look at first: a scalar with a range, else anything that is not a label; "" if there is none.
+/// Channels of scalars that are no labels and have a range, in order: indices into channels().
+std::vector<int> scalarChannels(const volume::DatasetInfo& info);
+
+/// The channel to look at first: a scalar with a range, the magnitude of a vector, else anything that is not a label;
+/// "" if there is none.
 std::string firstChannel(const volume::DatasetInfo& info);
 
 /// The name of a layer: the user's, else what it shows, "T surface", "T volume", "T slice z", "U flow".

@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kAlmost = 1.1; ///< of the picture: a box whose corners alone are cut off is meant to be seen whole
 
+constexpr double kLeastCovered = 0.6; ///< of the picture: a smaller box was fitted to another pane
+
 /// The window, in pixels, and its pixels per design pixel.
 struct Window {
     ImVec2 size;
@@ -115,7 +117,8 @@ void showWholeBox(Session& session, const volume::DatasetInfo& info, float scale
     for (const auto& [pane, view] : session.views) {
         if (std::holds_alternative<VolumeView>(view)) {
             const double aspect = aspectOf(window, session, pane);
-            if (coveredShare(cameraOf(session, pane), world, aspect) > 1) fitTo(session, pane, world, aspect);
+            const double covered = coveredShare(cameraOf(session, pane), world, aspect);
+            if (covered > 1 || covered < kLeastCovered) fitTo(session, pane, world, aspect);
         } else if (const auto* compare = std::get_if<CompareView>(&view); compare && compare->shows.empty()) {
             const double aspect = comparedAspect(*compare, session, info, paneSize(window, session, pane));
             if (coveredShare(session.camera, world, aspect) > 1) vis::fit(session.camera, world, aspect);

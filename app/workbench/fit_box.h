@@ -28,8 +28,9 @@ glm::dvec2 boxExtent(const vis::Camera& camera, const vis::WorldFrame& world);
 bool seesWholeBox(const Session& session, const std::string& pane, const vis::WorldFrame& world, float scale);
 
 /// Fits the cameras of a layout, which were chosen for other panes, to those volume views and comparisons of the 3D
-/// scene where they do not show the whole box; before the first frame, when no pane has a size, it does nothing.
-/// `scale`: of the window as it is drawn now; `next`: with the appearance of the session, which may bring another.
+/// scene where they do not show the whole box, or show it small; before the first frame, when no pane has a size, it
+/// does nothing. `scale`: of the window as it is drawn now; `next`: with the appearance of the session, which may bring
+/// another.
 void showWholeBox(Session& session, const volume::DatasetInfo& info, float scale, float next);
 
 /// Moves the camera of a volume view, or the one it shares, so that the box fits into its pane as the dock is now.

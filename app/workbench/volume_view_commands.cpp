@@ -1,4 +1,4 @@
-#include "app/data/first_view.h"
+#include "app/data/first_curve.h"
 #include "app/edits/multiples.h"
 #include "app/pane/view_parts.h"
 #include "app/session/shown_scene.h"

@@ -96,6 +96,39 @@ TEST(BoundaryValue, SmoothFieldsAndHidingOnesAreNoMaterials) {
     EXPECT_FALSE(materialsOf(*field(volume::ScalarType::F32, {0, 200}, flat), 0, 0));
 }
 
+/// Fibres of 170 along x in air of 57, with dark rims of 25 and noise, as of X-rays with phase contrast.
+int fibres(int x, int y, int z) {
+    const double away = std::hypot(y % 6 - 2.5, z % 6 - 2.5);
+    const int noise = (x * 7 + y * 13 + z * 29) % 11 - 5;
+    return noise + (away < 1.2 ? 170 : away < 2.2 ? 25 : 57);
+}
+
+TEST(BoundaryValue, RimsDoNotHideFibres) {
+    const auto scan = field(volume::ScalarType::U8, {0, 255}, fibres);
+    ASSERT_FALSE(backgroundShare(*scan, 0, 0)) << "fibres reach the faces";
+    const auto found = classesOf(*scan, 0, 0);
+    ASSERT_TRUE(found);
+    EXPECT_GT(found->below * 255, 62) << "all of the air is below";
+    EXPECT_LT(found->boundary * 255, 165);
+    EXPECT_GE(found->boundary, found->below);
+    const auto even = [](int x, int, int) { return 6 * x; };
+    EXPECT_FALSE(classesOf(*field(volume::ScalarType::U8, {0, 255}, even), 0, 0)) << "no valley, no classes";
+}
+
+TEST(BoundaryValue, ScansOfMaterialsAreToldFromSmoothObjects) {
+    const auto made = [](int x, int y, int z) {
+        const int depth = std::min({x, y, z, 39 - x, 11 - y, 11 - z});
+        return depth < 2 ? 5 : x < 20 ? 120 : 200;
+    };
+    EXPECT_TRUE(hasMaterials(*field(volume::ScalarType::U8, {0, 255}, made), 0, 0, 0.1));
+    const auto noisy = [&](int x, int y, int z) { return made(x, y, z) + (x * 7 + y * 13 + z * 29) % 41 - 5; };
+    EXPECT_TRUE(hasMaterials(*field(volume::ScalarType::U8, {0, 255}, noisy), 0, 0, 0.2)) << "a peak above a valley";
+    const auto smooth = [](int x, int y, int z) {
+        return 255 * std::exp(-std::hypot((x - 19.5) / 3.5, y - 5.5, z - 5.5) / 2);
+    };
+    EXPECT_FALSE(hasMaterials(*field(volume::ScalarType::U8, {0, 255}, smooth), 0, 0, 0.1));
+}
+
 TEST(BoundaryValue, ComputedFieldsHaveTheMiddleOfTheirUsualValues) {
     // One value in a hundred is 1000; the others run from 0 to 38.
     const auto computed = field(volume::ScalarType::F32, {0, 1000},

@@ -115,7 +115,7 @@ const std::vector<Shipped>& shipped() {
         {"statistics",
          "data histogram history layers log profile scatterMatrix sliceMatrix statistics timeline transfer volume",
          kTemperature,
-         {{"histogram", Orange, 0.0893}, {"scatterMatrix", Orange, 0.0337}, {"sliceMatrix", Cold, 0.011}},
+         {{"histogram", Orange, 0.0893}, {"scatterMatrix", Orange, 0.0337}, {"sliceMatrix", Cold, 0.0177}},
          true},
         {"tesseract",
          "data layers tesseract timeline transfer volume",
