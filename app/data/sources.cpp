@@ -93,6 +93,7 @@ void stateTimes(volume::DatasetInfo& info, const DataRef& data) {
 volume::OtherAxis axisOf(const volume::DatasetInfo& given, const DataRef& data, std::vector<std::string>& messages) {
     volume::OtherAxis axis{given, {}};
     stateTimes(axis.info, data);
+    if (axis.info.lengthUnit.empty()) axis.info.lengthUnit = data.import.lengthUnit;
     if (const auto by = data.axis.empty() ? std::nullopt : volume::axisBy(axis.info, data.axis)) return *by;
     if (!data.axis.empty() && data.axis != axis.info.timeName)
         messages.push_back(
@@ -152,7 +153,8 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     volume::OtherAxis axis = axisOf(source->info(), data, messages);
     const std::vector<int> order = axis.order;
     if (axis.info.times != source->info().times || axis.info.timeName != source->info().timeName ||
-        axis.info.timeUnit != source->info().timeUnit || !data.import.overTime.empty() || !data.import.units.empty())
+        axis.info.timeUnit != source->info().timeUnit || axis.info.lengthUnit != source->info().lengthUnit ||
+        !data.import.overTime.empty() || !data.import.units.empty())
         source = volume::onAxis(source, std::move(axis));
     source = volume::withLabelNames(source, data.import.labels);
     if (data.grids == ShownGrids::Both)

@@ -10,6 +10,7 @@
 #include "volume/base/trimmed.h"
 #include "volume/import/files/raw.h"
 #include "volume/import/import.h"
+#include "volume/import/over_time.h"
 
 #include <algorithm>
 #include <cctype>
@@ -134,6 +135,32 @@ bool lacksLayout(const std::string& path, const volume::ImportOptions& import) {
            fs::file_size(path, unknown) > 0 && !unknown;
 }
 
+namespace {
+
+/// What a table over time adds to data.
+std::string tableSummary(const std::string& path) {
+    const volume::TimeTable table = volume::readTimeTable(path);
+    std::string text = "Quantities over " + titleWithUnit(table.timeName, table.timeUnit) + ", " +
+                       std::to_string(table.times.size()) + " rows:";
+    for (const volume::Quantity& column : table.columns) text += "\n  " + titleWithUnit(column.name, column.unit);
+    return text + "\nOpen adds them to the data shown.";
+}
+
+/// What the dialog says of a file. Throws Cancelled.
+FilePreview readPreview(const std::string& path, const volume::ImportOptions& stated, const Progress& progress) {
+    try {
+        if (volume::isTimeTable(path)) return {tableSummary(path), false};
+    } catch (const Error&) { // then it may be a table of samples
+    }
+    try {
+        return {summary(path, stated, progress), false};
+    } catch (const Error& error) {
+        return {reasonHere(error), true};
+    }
+}
+
+} // namespace
+
 FilePreview ImportForm::previewOf(const std::string& path) {
     const auto known = previews_.find(path);
     if (known != previews_.end()) return known->second;
@@ -141,12 +168,7 @@ FilePreview ImportForm::previewOf(const std::string& path) {
     jobs_.start(
         "preview:" + path, "",
         [this, path, stated = stated_](const Progress& progress) -> Jobs::Finish {
-            FilePreview preview;
-            try {
-                preview.text = summary(path, stated, progress);
-            } catch (const Error& error) {
-                preview = {reasonHere(error), true};
-            }
+            const FilePreview preview = readPreview(path, stated, progress);
             return [this, path, stated, preview] {
                 if (stated == stated_) previews_[path] = preview; // otherwise outdated: read again
             };

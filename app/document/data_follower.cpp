@@ -55,7 +55,7 @@ OpenRequest DataFollower::withChoices(OpenRequest request) const {
 }
 
 DataFollower::OpenedBy DataFollower::openedBy(const DataRef& data) {
-    return {data.axis, data.timeAxis, data.import.overTime, data.other, data.grids};
+    return {data.axis, data.timeAxis, data.import.overTime, data.import.lengthUnit, data.other, data.grids};
 }
 
 void DataFollower::reset() {

@@ -49,12 +49,12 @@ public:
     OpenRequest withChoices(OpenRequest request) const;
 
 private:
-    /// The parts of the session after whose edits the data are opened again: what their times depend on, the other
-    /// data beside them, and which grids of D4* are shown.
+    /// The parts of the session after whose edits the data are opened again: what their times depend on, the unit of
+    /// lengths, the other data beside them, and which grids of D4* are shown.
     struct OpenedBy {
         std::string axis;
         std::optional<volume::TimeAxis> along;
-        std::string overTime;
+        std::string overTime, lengthUnit;
         std::optional<OtherData> other;
         ShownGrids grids = ShownGrids::Both;
         bool operator==(const OpenedBy&) const = default;

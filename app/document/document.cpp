@@ -65,6 +65,7 @@ bool Document::moveTo(RemadeData& made) {
     data.grids = now.grids;
     data.other = now.other;
     data.import.overTime = now.import.overTime;
+    data.import.lengthUnit = now.import.lengthUnit;
     if (data.files == now.files) data.import.labels = now.import.labels;
     const DataRef recorded = history_.data();
     const bool noEdit = session_ == history_.before();
@@ -74,6 +75,7 @@ bool Document::moveTo(RemadeData& made) {
     data.grids = recorded.grids;
     data.other = recorded.other;
     data.import.overTime = recorded.import.overTime;
+    data.import.lengthUnit = recorded.import.lengthUnit;
     if (data.files == recorded.files) data.import.labels = recorded.import.labels;
     data.derived = recorded.derived; // an edit in progress has yet to become a step
     history_.setData(data);

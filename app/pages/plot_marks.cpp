@@ -32,7 +32,7 @@ public:
 
     std::size_t draw() {
         image();
-        if (keyRoom(plot_, form_) > 0) colorKey();
+        if (form_.legend && !plot_.key.rgba.empty()) colorKey();
         if (plot_.framed) axes();
         const std::size_t before = out_.size();
         if (form_.outlines)
@@ -71,10 +71,12 @@ private:
     glm::dvec2 at(glm::dvec2 values) const { return {px(values.x), py(values.y)}; }
     double points(double usual) const { return usual * scale_; }
 
-    void words(double x, double y, const std::string& what, double anchor, double angle = 0) {
+    void words(double x, double y, const std::string& what, double anchor, double angle = 0,
+               std::optional<glm::vec3> ink = {}) {
         if (what.empty()) return;
+        const glm::vec4 color = ink ? glm::vec4(*ink, 1) : inks_.text;
         out_.push_back(
-            {Words{.text = what, .at = {x, y}, .size = text_, .color = inks_.text, .anchor = anchor, .angle = angle}});
+            {Words{.text = what, .at = {x, y}, .size = text_, .color = color, .anchor = anchor, .angle = angle}});
     }
     void stroke(std::vector<glm::dvec2> way, glm::vec4 color, double width) {
         out_.push_back({Stroke{.points = std::move(way), .width = width * scale_, .color = color}});
@@ -96,6 +98,7 @@ private:
         if (form_.axes) {
             below();
             beside();
+            if (plot_.right) rightOf(*plot_.right);
         }
         const std::vector<std::string> lines = titleLines(plot_, place_.box.hi.x - place_.box.lo.x, form_);
         const double line = titleLine(lines.size(), form_);
@@ -131,7 +134,7 @@ private:
             stroke({{x0_ - points(4), y}, {x0_, y}}, inks_.frame, kPageThin);
             widest = std::max(widest, pageTextWidth(ticks.texts[i], text_));
             if (!place_.numbersBeside || y > free) continue;
-            words(x0_ - points(6), y + points(3), ticks.texts[i], 1);
+            words(x0_ - points(6), y + points(3), ticks.texts[i], 1, 0, plot_.y.ink);
             free = y - text_;
         }
         if (!place_.numbersBeside) return;
@@ -142,7 +145,21 @@ private:
             words(start, (y0_ + y1_) / 2 + points(3), noted(plot_.y, ticks, place_.left - points(12) - widest, text_),
                   0);
         else
-            words(x0_ - place_.left + points(16), (y0_ + y1_) / 2, noted(plot_.y, ticks, y0_ - y1_, text_), 0.5, -90);
+            words(x0_ - place_.left + points(16), (y0_ + y1_) / 2, noted(plot_.y, ticks, y0_ - y1_, text_), 0.5, -90,
+                  plot_.y.ink);
+    }
+    void rightOf(const PlotAxis& axis) {
+        const TickLabels ticks = pageTicks(axis, y0_ - y1_, true, text_);
+        double free = HUGE_VAL;
+        for (std::size_t i = 0; i < ticks.values.size(); ++i) {
+            const double y = share(axis.range, ticks.values[i], y0_, y1_);
+            stroke({{x1_, y}, {x1_ + points(4), y}}, inks_.frame, kPageThin);
+            if (y > free) continue;
+            words(x1_ + points(6), y + points(3), ticks.texts[i], 0, 0, axis.ink);
+            free = y - text_;
+        }
+        words(x1_ + keyRoom(plot_, form_) - points(kRampText), (y0_ + y1_) / 2, noted(axis, ticks, y0_ - y1_, text_),
+              0.5, -90, axis.ink);
     }
 
     /// A dark line with a light outline, seen on any colour.
@@ -206,6 +223,8 @@ private:
         }
     }
     void line(const PlotSeries& series) {
+        const Range up = plot_.upOf(series).range;
+        const auto on = [&](const glm::dvec2& point) { return glm::dvec2(px(point.x), share(up, point.y, y0_, y1_)); };
         std::vector<glm::dvec2> way;
         const auto end = [&] {
             if (way.size() > 1) stroke(way, glm::vec4(series.color, 1), kPageLine);
@@ -216,12 +235,15 @@ private:
         };
         for (const glm::dvec2& point : series.points)
             if (std::isfinite(point.x) && std::isfinite(point.y))
-                way.push_back(at(point));
+                way.push_back(on(point));
             else
                 end();
         end();
         if (!series.dots) return;
-        for (const glm::dvec2& point : series.points) circle(point, 1.8, glm::vec4(series.color, 1));
+        for (const glm::dvec2& point : series.points)
+            if (std::isfinite(point.x) && std::isfinite(point.y))
+                out_.push_back(
+                    {Circle{.center = on(point), .radius = points(1.8), .color = glm::vec4(series.color, 1)}});
     }
     void cursor() {
         if (plot_.cursorX && *plot_.cursorX >= plot_.x.range.lo && *plot_.cursorX <= plot_.x.range.hi)
@@ -308,8 +330,16 @@ std::vector<std::string> titleLines(const Plot& plot, double width, const PageFo
 }
 
 double keyRoom(const Plot& plot, const PageForm& form) {
+    const double scale = form.text / kFigureText;
+    if (plot.right && form.axes) {
+        double widest = 0;
+        for (const int most : {3, 5, 8, 12})
+            for (const std::string& text : tickLabels(plot.right->range, most).texts)
+                widest = std::max(widest, pageTextWidth(text, form.text));
+        return widest + (6 + kRampText) * scale + 1.6 * form.text;
+    }
     if (plot.key.rgba.empty() || !form.legend) return 0;
-    return (kRampGap + kRampWidth + kRampText) * form.text / kFigureText +
+    return (kRampGap + kRampWidth + kRampText) * scale +
            std::max(pageTextWidth(plot.key.highest, form.text), pageTextWidth(plot.key.lowest, form.text));
 }
 

@@ -52,7 +52,7 @@ std::vector<std::string> titleLines(const Plot& plot, double width, const PageFo
 /// From one of so many lines to the next, points.
 double titleLine(std::size_t lines, const PageForm& form);
 
-/// Room beside a plot for the key of its colours, points.
+/// Room right of a plot for its second axis or the key of its colours, points.
 double keyRoom(const Plot& plot, const PageForm& form);
 
 /// Adds a plot without its list of series; returns how many of the marks come before those of the data.

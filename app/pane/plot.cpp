@@ -136,7 +136,8 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     const bool titled = !title.empty() || !unit.empty();
     const TickLabels ticks =
         ticksOn(side, range, bottom ? frame.width() : frame.height(), titled || options.noteElsewhere, options.scale);
-    const PlotColors colors = plotColors();
+    PlotColors colors = plotColors();
+    if (options.ink != 0) colors.text = colors.faint = options.ink;
     // If not all fits: the note comes first, since the numbers are wrong without it; then the title, then the unit; of
     // a title that does not fit alone, the unit comes before its last letters.
     const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
@@ -193,6 +194,22 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
                                          : frame.min.x - tickLength() - em() * 0.9f - widest;
         addTextUpwards(draw, {x, centred((frame.min.y + frame.max.y) / 2)}, colors.faint, label.c_str());
     }
+}
+
+void drawRightAxis(ImDrawList& draw, const PlotFrame& frame, std::string_view title, std::string_view unit, float room,
+                   ImU32 ink) {
+    const TickLabels ticks = ticksOn(AxisSide::Left, frame.y, frame.height(), true, {});
+    const ImU32 color = ink != 0 ? ink : plotColors().text;
+    for (std::size_t i = 0; i < ticks.values.size(); ++i) {
+        const float at = std::round(frame.pixel(frame.x.hi, ticks.values[i]).y) + 0.5f, half = em() / 2;
+        draw.AddLine({frame.max.x, at}, {frame.max.x + tickLength(), at}, plotColors().frame);
+        const float top = std::clamp(at - half, frame.min.y - em() * 0.3f, frame.max.y - em() * 0.7f);
+        draw.AddText({std::round(frame.max.x + tickLength() + em() * 0.15f), std::round(top)}, color,
+                     ticks.texts[i].c_str());
+    }
+    const std::string whole = titleWithUnit(title, unit) + (ticks.note.empty() ? "" : "  " + ticks.note);
+    const std::string label = fitText(whole, frame.height());
+    addTextUpwards(draw, {frame.max.x + room - em() * 0.6f, (frame.min.y + frame.max.y) / 2}, color, label.c_str());
 }
 
 namespace {

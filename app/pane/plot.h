@@ -63,6 +63,7 @@ struct AxisOptions {
     float room = 0;
     bool noteElsewhere = false; ///< an axis without title: the caller writes axisNote()
     AxisScale scale = {};       ///< numbers of an axis that is drawn by cells; values of the frame are its places
+    ImU32 ink = 0;              ///< of numbers and title; 0: that of texts
 };
 
 /// Where the title of an axis is, with what its numbers must be read with.
@@ -93,6 +94,11 @@ ColumnHeights columnHeights(float room, std::size_t plots);
 /// [lo, hi] pixels along the axis: those at the ends are moved inwards.
 void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::string_view title, std::string_view unit,
               float lo, float hi, const AxisOptions& options = {});
+
+/// The same along the right side: `frame.y` has its range, and `room` pixels are free beside it (axisRoom of a left one
+/// with its title beside). The title is left out where it is longer than the frame.
+void drawRightAxis(ImDrawList& draw, const PlotFrame& frame, std::string_view title, std::string_view unit, float room,
+                   ImU32 ink);
 
 /// Text turned clockwise by an angle in radians, centred at a point.
 void addTextTurned(ImDrawList& draw, ImVec2 center, float angle, ImU32 color, const char* text);

@@ -151,7 +151,11 @@ std::vector<int> chosenChannels(const volume::DatasetInfo& info, const std::vect
 void chooseChannels(ToolRow& tools, const volume::DatasetInfo& info, std::vector<std::string>& names,
                     const std::vector<int>& shown) {
     if (!tools.next(em() * 7.8f)) return;
-    const std::string label = std::to_string(shown.size()) + (shown.size() == 1 ? " parameter" : " parameters");
+    const std::size_t all = comparedChannels(info).size();
+    // More than are shown where the user has not chosen: says so.
+    const bool cut = names.empty() && shown.size() < all;
+    const std::string label = cut ? std::to_string(shown.size()) + " of " + std::to_string(all) + " shown"
+                                  : std::to_string(shown.size()) + (shown.size() == 1 ? " parameter" : " parameters");
     ImGui::SetNextItemWidth(em() * 7.8f);
     if (ImGui::BeginCombo("##channels", label.c_str(), ImGuiComboFlags_HeightLarge)) {
         const std::vector<volume::Channel> channels = info.channels();
@@ -171,6 +175,12 @@ void chooseChannels(ToolRow& tools, const volume::DatasetInfo& info, std::vector
         ImGui::EndCombo();
     }
     if (ImGui::IsItemHovered()) tooltip("Parameters shown");
+}
+
+std::string otherTimeText(const vis::Layer& layer, const volume::DatasetInfo& info, double shown) {
+    if (layer.timeShift == 0 || info.times.size() < 2) return {};
+    const double time = std::clamp(shown + layer.timeShift, info.times.front(), info.times.back());
+    return " at " + stateNames(info, {time}).front();
 }
 
 std::string layerTitle(const vis::Layer& layer, const volume::DatasetInfo& info) {
@@ -266,6 +276,7 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
         const auto channel = info.findChannel(name);
         if (!channel) continue;
         LegendEntry entry = legendOf(session, info, *channel, layer.transfer);
+        const std::string otherTime = otherTimeText(layer, info, session.time);
         const std::string& colorBy = vis::colorByOf(layer.technique);
         const auto color = colorBy.empty() ? std::nullopt : info.findChannel(colorBy);
         const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
@@ -274,26 +285,29 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
             entry.color = {iso->color.r, iso->color.g, iso->color.b};
             if (color) entry.color = {0.5, 0.5, 0.5};
             entry.value = iso->value;
+            entry.title += otherTime;
             entries.push_back(entry);
         } else if (color) {
             const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique);
             if (volume && volume->style != vis::RayStyle::XRay) entry = legendOfVolume(*volume, info, std::move(entry));
             entry.regions = false;
             entry.opacity = true;
-            entry.title = "opacity by " + entry.title;
+            entry.title = "opacity by " + entry.title + otherTime;
             entry.names.clear();
             if (seen.insert(entry.title + " " + layer.transfer).second) entries.push_back(entry);
         } else {
             const std::string function = layer.transfer.empty() ? name : layer.transfer;
             if (const auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique))
                 entry = legendOfVolume(*volume, info, std::move(entry));
+            entry.title += otherTime;
             const bool ofValues = entry.title == info.channel(*channel).name;
             if (seen.insert(ofValues ? function : entry.title + " " + function).second) entries.push_back(entry);
         }
         // A surface's own function is that of its colours.
         const std::string function = iso && !layer.transfer.empty() ? layer.transfer : colorBy;
-        if (color && seen.insert(function).second)
-            entries.push_back(legendOf(session, info, *color, iso ? layer.transfer : std::string()));
+        if (!color || !seen.insert(function + otherTime).second) continue;
+        entries.push_back(legendOf(session, info, *color, iso ? layer.transfer : std::string()));
+        entries.back().title += otherTime;
     }
     return entries;
 }

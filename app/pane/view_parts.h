@@ -57,6 +57,8 @@ void chooseChannels(ToolRow& tools, const volume::DatasetInfo& info, std::vector
 /// for data without parameters.
 std::optional<int> resolveChannel(const volume::DatasetInfo& info, const Session& session, const std::string& wanted);
 
+/// " at 0.85 V" of a layer that is drawn at another time than the one shown; else "".
+std::string otherTimeText(const vis::Layer& layer, const volume::DatasetInfo& info, double shown);
 /// The name of a layer; of a surface that the user has not named with its value: "T surface 350 K".
 std::string layerTitle(const vis::Layer& layer, const volume::DatasetInfo& info);
 

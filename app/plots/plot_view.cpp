@@ -19,11 +19,18 @@ ImU32 seriesInk(glm::vec3 color) {
     return toColor({double(color.r), double(color.g), double(color.b)});
 }
 
+/// The frame with the values of the series' own axis.
+PlotFrame frameOf(const Plot& plot, const PlotSeries& series, PlotFrame frame) {
+    if (series.right && plot.right) frame.y = plot.right->range;
+    return frame;
+}
+
 /// Points along the lines of a plot, close enough to find out what they cross.
-std::vector<ImVec2> alongSeries(const Plot& plot, const PlotFrame& frame) {
+std::vector<ImVec2> alongSeries(const Plot& plot, const PlotFrame& whole) {
     constexpr int kParts = 16;
     std::vector<ImVec2> along;
-    for (const PlotSeries& series : plot.series)
+    for (const PlotSeries& series : plot.series) {
+        const PlotFrame frame = frameOf(plot, series, whole);
         for (std::size_t i = 0; i < series.points.size(); ++i) {
             if (!std::isfinite(series.points[i].y)) continue;
             const ImVec2 to = frame.pixel(series.points[i].x, series.points[i].y);
@@ -36,6 +43,7 @@ std::vector<ImVec2> alongSeries(const Plot& plot, const PlotFrame& frame) {
                 along.push_back({std::lerp(from.x, to.x, share), std::lerp(from.y, to.y, share)});
             }
         }
+    }
     return along;
 }
 
@@ -75,37 +83,58 @@ void drawSeriesLine(ImDrawList& draw, const PlotSeries& series, const PlotFrame&
 
 } // namespace
 
-std::optional<PlotColumn> placePlots(const std::vector<Plot>& plots, float beside) {
+namespace {
+
+/// As few columns as give each plot some height, while they are wide enough.
+std::size_t columnsFor(std::size_t plots, ImVec2 room) {
+    constexpr float kLow = 9, kNarrow = 17; // em
+    std::size_t columns = 1;
+    const auto rows = [&] { return (plots + columns - 1) / columns; };
+    while (columns < plots && room.y < em() * kLow * static_cast<float>(rows()) &&
+           room.x >= em() * kNarrow * static_cast<float>(columns + 1))
+        ++columns;
+    return columns;
+}
+
+} // namespace
+
+std::optional<PlotColumn> placePlots(const std::vector<Plot>& plots, float beside, bool several) {
     PlotColumn column;
     column.origin = ImGui::GetCursorScreenPos();
-    const ImVec2 all = ImGui::GetContentRegionAvail();
-    const ColumnHeights heights = columnHeights(all.y, plots.size());
+    ImVec2 all = ImGui::GetContentRegionAvail();
+    if (several) column.columns = columnsFor(plots.size(), all);
+    const std::size_t rows = (plots.size() + column.columns - 1) / column.columns;
+    const ColumnHeights heights = columnHeights(all.y, rows);
     column.room = {all.x, heightAtLeast(heights.all)};
     column.titledBelow = heights.titled;
-    column.titled = all.x > em() * 24;
+    all.x /= static_cast<float>(column.columns);
+    column.titled = all.x > em() * (several ? 16 : 24);
     for (const Plot& plot : plots)
         column.titled =
             column.titled && ImGui::CalcTextSize(titleWithUnit(plot.y.title, plot.y.unit).c_str()).x < heights.each;
     for (const Plot& plot : plots)
         column.left = std::max(column.left, axisRoom(AxisSide::Left, plot.y.range,
                                                      column.titled ? TitlePlace::Beside : TitlePlace::Nowhere));
-    if (column.room.x - column.left < em() * 4) {
+    if (all.x - column.left < em() * 4) {
         drawHint("Not enough room", "Enlarge the pane.");
         return std::nullopt;
     }
     const float x0 = column.origin.x + column.left;
-    float x1 = column.origin.x + column.room.x - em() * 0.6f;
+    float x1 = column.origin.x + all.x - em() * 0.6f;
     if (beside > 0 && x1 - x0 - beside > em() * 8) column.beside = beside;
     x1 -= column.beside;
     ImGui::SetCursorScreenPos({x0, column.origin.y});
-    mouseArea("plots", {x1 - x0, column.room.y - heights.bottom});
+    mouseArea("plots", {x1 - x0 + all.x * static_cast<float>(column.columns - 1), column.room.y - heights.bottom});
     column.taken = ImGui::IsItemActive();
     column.hovered = ImGui::IsItemHovered() || column.taken;
-    column.share = std::clamp(double((ImGui::GetIO().MousePos.x - x0) / (x1 - x0)), 0.0, 1.0);
+    const float under = ImGui::GetIO().MousePos.x - column.origin.x;
+    const float left = std::clamp(std::floor(under / all.x), 0.0f, static_cast<float>(column.columns - 1)) * all.x;
+    column.share = std::clamp(double((column.origin.x + under - left - x0) / (x1 - x0)), 0.0, 1.0);
     for (std::size_t i = 0; i < plots.size(); ++i) {
-        const float top = column.origin.y + em() * 0.2f + heights.each * static_cast<float>(i);
-        column.frames.push_back({{x0, std::round(top)},
-                                 {x1, std::round(top + heights.each - em() * 0.4f)},
+        const float top = column.origin.y + em() * 0.2f + heights.each * static_cast<float>(i / column.columns);
+        const float right = std::round(all.x * static_cast<float>(i % column.columns));
+        column.frames.push_back({{x0 + right, std::round(top)},
+                                 {x1 + right, std::round(top + heights.each - em() * 0.4f)},
                                  plots[i].x.range,
                                  plots[i].y.range});
     }
@@ -121,7 +150,8 @@ void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, b
     else if (!plot.title.empty())
         names.emplace_back(plot.title, plotColors().text);
     const bool told = std::ranges::all_of(plot.series, [&](const PlotSeries& series) { // names with the unit
-        return !plot.y.unit.empty() && series.name.ends_with(titleWithUnit("", plot.y.unit));
+        const std::string& unit = plot.upOf(series).unit;
+        return !unit.empty() && series.name.ends_with(titleWithUnit("", unit));
     });
     if (!titled && plot.series.size() > 1 && !told) names.emplace_back(up, plotColors().text);
     for (const PlotSeries& series : plot.series) {
@@ -160,7 +190,7 @@ void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool t
     drawPlotNames(draw, plot, frame, titled); // below the lines: a low plot has no room beside them
     draw.PushClipRect({frame.min.x - em(), frame.min.y}, {frame.max.x + em(), frame.max.y}, true);
     for (const PlotSeries& series : plot.series)
-        series.bars ? drawSeriesBars(draw, series, frame) : drawSeriesLine(draw, series, frame);
+        series.bars ? drawSeriesBars(draw, series, frame) : drawSeriesLine(draw, series, frameOf(plot, series, frame));
     if (plot.cursorX || plot.cursorY)
         drawCrosshair(draw, frame, plot.cursorX.value_or(std::nan("")), plot.cursorY.value_or(std::nan("")),
                       plot.series.empty());
@@ -173,12 +203,28 @@ void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool t
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
     drawAxis(draw, frame, AxisSide::Left, titled ? plot.y.title : "", titled ? plot.y.unit : "",
-             frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f, {.grid = grid, .room = left});
+             frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f,
+             {.grid = grid, .room = left, .ink = plot.y.ink ? seriesInk(*plot.y.ink) : 0});
+    if (!plot.right) return;
+    PlotFrame right = frame;
+    right.y = plot.right->range;
+    drawRightAxis(draw, right, plot.right->title, plot.right->unit, rightAxisRoom(plot),
+                  plot.right->ink ? seriesInk(*plot.right->ink) : 0);
+}
+
+float rightAxisRoom(const Plot& plot) {
+    return plot.right ? axisRoom(AxisSide::Left, plot.right->range, TitlePlace::Beside) : 0;
 }
 
 void drawPlotBottom(ImDrawList& draw, const Plot& last, const PlotColumn& column) {
-    drawAxis(draw, column.frames.back(), AxisSide::Bottom, last.x.title, last.x.unit, column.origin.x,
-             column.origin.x + column.room.x, {.inlineTitle = !column.titledBelow});
+    const float width = column.room.x / static_cast<float>(column.columns);
+    for (std::size_t i = 0; i < std::min(column.columns, column.frames.size()); ++i) {
+        PlotFrame frame = column.frames[i];
+        frame.max.y = column.frames.back().max.y;
+        const float left = column.origin.x + width * static_cast<float>(i);
+        drawAxis(draw, frame, AxisSide::Bottom, last.x.title, last.x.unit, left, left + width,
+                 {.inlineTitle = !column.titledBelow});
+    }
 }
 
 ImVec2 freeCorner(const PlotFrame& frame, ImVec2 size, const std::vector<ImVec2>& line) {

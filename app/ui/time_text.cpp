@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <set>
 #include <vector>
 
 namespace tessera::app {
@@ -82,6 +83,31 @@ std::string quantitiesText(const volume::DatasetInfo& info, double time, std::st
                                        : groupedNumber(value) + " " + prettyUnit(quantity->unit);
     }
     return text;
+}
+
+std::vector<std::string> stateNames(const volume::DatasetInfo& info, const std::vector<double>& times) {
+    const bool clock = timeWord(info) == "t";
+    std::vector<std::string> own, chosen;
+    for (const double time : times)
+        own.push_back(info.timeUnit.empty() ? timeText(info, time) : timeValueText(info, time));
+    if (!clock && !info.timeUnit.empty()) return own;
+    bool distinct = false;
+    for (const volume::Quantity& quantity : info.quantities) {
+        if (quantity.unit.empty()) continue;
+        volume::DatasetInfo alone;
+        alone.times = info.times;
+        alone.quantities = {quantity};
+        std::vector<std::string> names;
+        for (const double time : times) names.push_back(quantitiesText(alone, time));
+        const std::set<std::string> different(names.begin(), names.end());
+        const bool all = different.size() == names.size();
+        if (!chosen.empty() || different.contains("") || !(all || clock)) continue;
+        chosen = names;
+        distinct = all;
+    }
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+        own[i] = distinct && info.timeUnit.empty() ? chosen[i] : own[i] + ", " + chosen[i];
+    return own;
 }
 
 std::string stateText(const volume::DatasetInfo& info, double time, std::string_view first) {

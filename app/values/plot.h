@@ -21,6 +21,7 @@ struct PlotAxis {
     bool numbered = true;  ///< categories are not
     std::string unit = {}; ///< written behind the title, which is cut off before it
     AxisScale scale = {};  ///< of an axis that is drawn by cells; range and values of the plot are its places
+    std::optional<glm::vec3> ink = {}; ///< of its numbers and title: that of the only series it is for
     bool operator==(const PlotAxis& other) const = default;
 };
 
@@ -31,6 +32,7 @@ struct PlotSeries {
     bool bars = false;
     bool dots = false;      ///< a dot at every point, beside the line
     std::string value = {}; ///< at the cursor; on screen it stands behind the name
+    bool right = false;     ///< its values are those of the plot's right axis
 };
 
 /// A picture of cells between the ends of both axes: RGBA, row 0 at the top.
@@ -79,8 +81,12 @@ struct Plot {
     std::vector<PlotOutline> outlines = {};
     std::optional<double> cursorX = {}, cursorY = {}; ///< lines across the plot
     std::vector<PlotBand> brushed = {};
-    PlotColorKey key = {}; ///< of the picture
-    bool framed = true;    ///< else what it holds stands without frame and axes
+    PlotColorKey key = {};              ///< of the picture
+    bool framed = true;                 ///< else what it holds stands without frame and axes
+    std::optional<PlotAxis> right = {}; ///< a second vertical axis, of some of the series
+
+    /// The vertical axis of a series.
+    const PlotAxis& upOf(const PlotSeries& each) const { return each.right && right ? *right : y; }
 };
 
 /// Colour of the nth series of a plot, on a light or dark ground.
@@ -93,5 +99,8 @@ inline glm::vec3 plotInk(std::size_t n, bool dark) {
                                                                     {{{0, 0, 0}, {0.95f, 0.95f, 0.95f}}}}};
     return kInks[n % kInks.size()][dark ? 1 : 0];
 }
+
+/// Colour of the nth of `count` states in order, from a sequential map, on a light or dark ground.
+glm::vec3 stateInk(std::size_t n, std::size_t count, bool dark);
 
 } // namespace tessera::app

@@ -269,20 +269,19 @@ std::vector<Command> differenceCommands(Workbench& workbench) {
                     const auto channel = resolveChannel(info, session, "");
                     if (!channel) return;
                     const std::string of = info.channel(*channel).name;
-                    const volume::DerivedParameter made = newDifference(info, of, {which, session.time});
-                    workbench.message("New parameter: " + addDerived(session, made));
+                    workbench.message(showDifference(session, info, of, {which, session.time}));
                 },
             .enabled =
                 [&workbench] { return workbench.document().loaded() && workbench.document().info().times.size() > 1; }};
     };
-    return {command("Minus another time: first", "Add the parameter shown minus its values at the first time",
+    return {command("Minus another time: first", "Show the parameter minus its values at the first time",
                     volume::OtherTime::First),
-            command("Minus another time: previous", "Add the parameter shown minus its values at the previous time",
+            command("Minus another time: previous", "Show the parameter minus its values at the previous time",
                     volume::OtherTime::Previous),
-            command("Minus another time: last", "Add the parameter shown minus its values at the last time",
+            command("Minus another time: last", "Show the parameter minus its values at the last time",
                     volume::OtherTime::Last),
-            command("Minus another time: the time shown",
-                    "Add the parameter shown minus its values at the time shown now", volume::OtherTime::Time)};
+            command("Minus another time: the time shown", "Show the parameter minus its values at the time shown now",
+                    volume::OtherTime::Time)};
 }
 
 /// Brings the panel of derived parameters to the front.

@@ -1,6 +1,7 @@
 #include "app/workbench/pane_host.h"
 
 #include "app/pane/pane_title.h"
+#include "app/pane/tool_row.h"
 #include "app/session/own_functions.h"
 #include "app/session/shown_scene.h"
 

@@ -25,9 +25,10 @@ void Workbench::open(OpenRequest request) {
             (request.paths.size() > 1 || !namesModel(path)))
             return message(path + ": no such file", true);
     }
-    if (document_.loaded() && !options_.headless && request.paths.size() == 1 && !request.import &&
+    const bool plain = !request.import || *request.import == volume::ImportOptions{};
+    if (document_.loaded() && !options_.headless && request.paths.size() == 1 && plain &&
         volume::isTimeTable(request.paths.front()))
-        return data_.addTable(request.paths.front());
+        return data_.addTable(request.paths.front()); // to the data shown, which it is about
     leave([this, request = std::move(request)] { start(request); });
 }
 

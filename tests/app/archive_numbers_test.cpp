@@ -103,9 +103,9 @@ TEST(ArchiveNumbers, KeptOnesAreTheSourcesOwn) {
         ASSERT_NO_FATAL_FAILURE(expectBalance(balanceTable(cell.info(), balance),
                                               balanceTable(cell.info(), readBalance(cell.source, {}, cell.balance()))));
 
-        PlotCurvesQuery curves{"time", {"mean(T)", "max(c)", "deviation(c)", "share(U.z)", "integral(c)"}, -1, {}, {}};
+        PlotCurvesQuery curves{"time", {"mean(T)", "max(c)", "deviation(c)", "share(U.z)", "integral(c)"}, {}, {}};
         for (const int region : {-1, 3}) {
-            if (region >= 0) curves.label = query.label, curves.regions = {region};
+            if (region >= 0) curves.regions = {{query.label, region, ""}};
             const volume::Curves is = readCurves(*cell.packed.numbers, cell.packed.origin, curves),
                                  was = readCurves(*cell.source, {}, curves);
             for (std::size_t y = 0; y < 5; ++y)

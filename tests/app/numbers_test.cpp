@@ -115,7 +115,7 @@ Numbers read(const volume::BrickSource& source, std::shared_ptr<const volume::Br
     query.channels = channels;
     query.corners = {info.bounds.lo, info.bounds.hi};
     query.samples = 41;
-    query.time = volume::timesAround(info.times, 0.4 * info.times.back());
+    query.times = {volume::timesAround(info.times, 0.4 * info.times.back())};
     out.profile = readProfile(source, query);
     return out;
 }

@@ -98,7 +98,7 @@ TEST(RegionData, SectionsHaveUnitsAndCurvesARegionEach) {
     unstated.timeUnit.clear();
     EXPECT_EQ(measureUnit(unstated, 0, "U", SectionMeasure::Flow).unit, "length3/time");
 
-    const auto csv = rowsOf(csvOf(sectionTable(info, curves)));
+    const auto csv = rowsOf(csvOf(sectionTable(info, {curves})));
     ASSERT_EQ(csv.size(), 1u + 3 * 2 * 9);
     EXPECT_EQ(csv[0][0], "z [m]");
     const std::vector<std::string>& third = csv[1 + 9 * 2 + 2]; // air, O2, third plane
@@ -110,7 +110,7 @@ TEST(RegionData, SectionsHaveUnitsAndCurvesARegionEach) {
     EXPECT_NEAR(std::stod(third[11]), values.flux, 1e-8 * std::abs(values.flux));
     EXPECT_EQ(third[12], "mol/s");
 
-    const auto panels = sectionPanels(info, curves, SectionMeasure::Flux);
+    const auto panels = sectionPanels(info, {curves}, SectionMeasure::Flux);
     ASSERT_EQ(panels.size(), 2u);
     EXPECT_EQ(wholeAxisTitle(panels[0].y), "flux of O2 [mol/s]");
     EXPECT_EQ(wholeAxisTitle(panels[0].x), "z [mm]");
@@ -129,8 +129,8 @@ TEST(RegionData, WithoutAVelocityThereIsNoFlux) {
     query.channels = {0};
     const SectionCurves curves = readSections(source, query);
     EXPECT_EQ(curves.velocity, "");
-    EXPECT_THROW(sectionPanels(source->info(), curves, SectionMeasure::Flux), Error);
-    EXPECT_EQ(rowsOf(csvOf(sectionTable(source->info(), curves)))[1][11], ""); // no number rather than 0
+    EXPECT_THROW(sectionPanels(source->info(), {curves}, SectionMeasure::Flux), Error);
+    EXPECT_EQ(rowsOf(csvOf(sectionTable(source->info(), {curves})))[1][11], ""); // no number rather than 0
     query.weight = volume::SectionWeight::MassFlow;
     EXPECT_THROW(readSections(source, query), Error);
     EXPECT_THROW(readBalance(source, {}, {}), Error);
@@ -260,7 +260,7 @@ TEST(RegionData, OxygenOfTheSharedCellFallsAlongItsChannel) {
     query.channels = {*info.findChannel("O2"), *info.findChannel("H2")};
     query.label = *volume::labelChannel(info);
     const SectionCurves curves = readSections(sources.numbers, query);
-    const auto panels = sectionPanels(info, curves, SectionMeasure::Mean);
+    const auto panels = sectionPanels(info, {curves}, SectionMeasure::Mean);
     ASSERT_EQ(panels[0].series.size(), 1u);
     EXPECT_EQ(panels[0].title, "cathode");
     EXPECT_EQ(wholeAxisTitle(panels[0].x), "z [mm]");

@@ -200,7 +200,7 @@ TEST(Scenarios, OxygenFallsAlongTheChannelWhileWaterRises) {
                        .channels = {task.channel("O2"), task.channel("H2O"), task.channel("T")},
                        .corners = profileCorners(std::get<ProfileView>(view->second), session, task.info().bounds),
                        .samples = 200,
-                       .time = volume::timesAround(task.info().times, session.time)};
+                       .times = {volume::timesAround(task.info().times, session.time)}};
     const Profile profile = readProfile(*task.source, query);
     EXPECT_LT(correlation(profile.values[0], profile.values[1]), -0.8);
     EXPECT_LT(correlation(profile.distance, profile.values[0]), -0.3);
@@ -216,7 +216,7 @@ TEST(Scenarios, OxygenFallsAlongTheChannelWhileWaterRises) {
         if (glm::distance(profile.positions[i], session.cursor) <
             glm::distance(profile.positions[nearest], session.cursor))
             nearest = i;
-    const auto read = volume::probe(*task.source, profile.positions[nearest], query.time);
+    const auto read = volume::probe(*task.source, profile.positions[nearest], query.times[0]);
     for (std::size_t c = 0; c < query.channels.size(); ++c)
         EXPECT_EQ(profile.values[c][nearest], read[std::size_t(query.channels[c])].interpolated.value());
 }
@@ -347,8 +347,7 @@ TEST(Scenarios, ThePulseBeginsAtItsPlantedTime) {
         *task.source, {.over = ProfileOver::LineAndTime,
                        .channels = {hydrogen},
                        .corners = profileCorners(std::get<ProfileView>(view->second), session, task.info().bounds),
-                       .samples = 150,
-                       .time = {}});
+                       .samples = 150});
     const std::size_t places = over.positions.size();
     const auto value = [&](std::size_t t, std::size_t i) { return over.values[0][t * places + i]; };
     ASSERT_FALSE(std::isnan(value(0, places / 2))) << "the line lies where there is hydrogen";

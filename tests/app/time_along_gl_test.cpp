@@ -148,8 +148,7 @@ TEST_F(TimeAlong, ProfilesAlongTimeAreInItsUnit) {
     const volume::DatasetInfo& info = source->info();
     const glm::dvec3 middle = info.bounds.center();
     const auto alongAxis = [&](int axis) {
-        ProfileQuery query{
-            .over = ProfileOver::Line, .channels = {0}, .corners = {middle, middle}, .samples = 5, .time = {}};
+        ProfileQuery query{.over = ProfileOver::Line, .channels = {0}, .corners = {middle, middle}, .samples = 5};
         query.corners[0][axis] = info.bounds.lo[axis];
         query.corners[1][axis] = info.bounds.hi[axis];
         return readProfile(*source, query);

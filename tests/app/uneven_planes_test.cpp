@@ -164,8 +164,7 @@ TEST(UnevenProfiles, AreStraightInSpaceAndReachThinCells) {
     const auto source = unevenLayers(AxisMap::Of::Cells);
     const volume::DatasetInfo& info = source->info();
     const glm::dvec3 from(1.2e-3, 7e-4, info.bounds.lo.z), to(2.4e-3, 1.5e-3, info.bounds.hi.z);
-    const Profile profile =
-        readProfile(*source, {.channels = {0}, .corners = {from, to}, .samples = 100, .time = {0, 0, 0}});
+    const Profile profile = readProfile(*source, {.channels = {0}, .corners = {from, to}, .samples = 100});
     ASSERT_EQ(profile.positions.size(), 100u);
     EXPECT_LT(glm::distance(profile.positions.front(), from), 1e-12);
     EXPECT_LT(glm::distance(profile.positions.back(), to), 1e-12);

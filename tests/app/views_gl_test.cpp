@@ -197,7 +197,7 @@ TEST_F(Views, CurvesOfSectionAveragesAreDrawnOverTheTitlesOfTheirPlot) {
     SectionCurvesQuery query;
     query.channels = {source->info().findChannel("T").value()};
     query.label = volume::labelChannel(source->info()).value_or(-1);
-    const std::vector<Plot> panels = sectionPanels(source->info(), readSections(source, query), SectionMeasure::Mean);
+    const std::vector<Plot> panels = sectionPanels(source->info(), {readSections(source, query)}, SectionMeasure::Mean);
     ASSERT_EQ(panels.size(), 1u);
     ASSERT_FALSE(panels[0].series.empty());
     const auto backdrop = cornersOf(plotColors().backdrop);

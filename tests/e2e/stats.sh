@@ -94,7 +94,7 @@ done
 # Wrong words: status 2 and one line.
 for words in "--of nothing" "--by T" "--along w" "--line 1,2,3" "--balance nothing" "--regions nowhere" \
     "--along z --balance O2" "--velocity T --balance O2" "--label region:x=a" "--label nothing:1=a" "-o out.txt" \
-    "-o regions.svg" "--along z --planes 5" "--show flux" "--all-times --time 0"; do
+    "--along z --planes 5" "--show flux" "--all-times --time 0"; do
     # shellcheck disable=SC2086
     check "$words" 2 "$tessera" stats cell.raw $words
     [ "$(wc -l < err.txt)" -eq 1 ] || fail "not one line: $words: $(cat err.txt)"

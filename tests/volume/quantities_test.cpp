@@ -144,6 +144,49 @@ TEST_F(Quantities, TheAxisFollowsTheTableWhereTheDataDoNotStateIt) {
     EXPECT_EQ(seconds.timeUnit, "s");
 }
 
+TEST_F(Quantities, RowsAreMatchedByWhatTheDataAndTheTableShare) {
+    // A column named as the axis of the data, in any order of its rows.
+    DatasetInfo info = withTimes({0.6, 0.75, 0.85});
+    info.timeName = "voltage";
+    info.timeUnit = "V";
+    addTable(info, parseTimeTable("case,Voltage [V],j [A/m2]\n1,0.85,10\n2,0.6,300\n3,0.75,100\n", "h.csv"));
+    EXPECT_EQ(named(info, "j").values, (std::vector<double>{300, 100, 10}));
+    EXPECT_EQ(named(info, "j").unit, "A/m2");
+    EXPECT_EQ(named(info, "case").values, (std::vector<double>{2, 3, 1}));
+    EXPECT_FALSE(findQuantity(info, "Voltage")) << "is the axis";
+    EXPECT_EQ(info.timeName, "voltage");
+    // A counter of both.
+    info = withTimes({100, 200});
+    info.timeName = "step";
+    addTable(info, parseTimeTable("time [s],iteration,residual\n0.1,100,1e-3\n0.2,200,1e-4\n", "h.csv"));
+    EXPECT_EQ(named(info, "residual").values, (std::vector<double>{1e-3, 1e-4}));
+    EXPECT_EQ(named(info, "time").values, (std::vector<double>{0.1, 0.2}));
+    EXPECT_EQ(named(info, "time").unit, "s");
+    // A quantity over time of the data; one that is not known at a time tells nothing there.
+    info = withTimes({1, 2, 3});
+    info.timeName = "operating point";
+    info.quantities = {{"current", "A", {5, std::numeric_limits<double>::quiet_NaN(), 9}}};
+    addTable(info, parseTimeTable("t [h],current [A],T [K]\n0,5,350\n1,9,360\n", "h.csv"));
+    EXPECT_EQ(named(info, "T").values[0], 350);
+    EXPECT_TRUE(std::isnan(named(info, "T").values[1]));
+    EXPECT_EQ(named(info, "T").values[2], 360);
+    // In another unit it is not the same.
+    EXPECT_THROW(addTable(info, parseTimeTable("t [h],current [mA],x\n70,5,350\n71,9,360\n", "h.csv")), Error);
+}
+
+TEST_F(Quantities, WhatNeitherHasIsNamed) {
+    DatasetInfo info = withTimes({1, 2});
+    info.timeName = "step";
+    info.quantities = {{"voltage", "V", {0.85, 0.6}}};
+    try {
+        addTable(info, parseTimeTable("time [h],power [W]\n0,1\n1,2\n", "h.csv"));
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("h.csv"), HasSubstr("the table has time [h], power [W]"),
+                                                 HasSubstr("the data have step, voltage [V]")));
+    }
+}
+
 TEST_F(Quantities, AreTakenToOtherTimesAndLonger) {
     const std::vector<double> times{0, 1, 3}, wanted{-1, 0, 2, 3};
     const std::vector<Quantity> at = atTimes({{"U", "V", {5, 7, 3}}}, times, wanted);

@@ -180,7 +180,28 @@ TimeTable readTimeTable(const std::string& path) {
     return parseTimeTable(readInput(path, kMostTableBytes), path);
 }
 
-void addTable(DatasetInfo& info, const TimeTable& table) {
+namespace {
+
+/// What rows and times of the data are matched by.
+struct Match {
+    std::vector<double> rows, times; ///< of each row of the table, rising; of each time of the data
+    std::vector<Quantity> columns;   ///< in the order of the rows
+    bool byAxis = true;              ///< the axis of the table is that of the data
+};
+
+bool isClock(const std::string& name) {
+    const std::string word = lower(name);
+    return word == "t" || word == "time";
+}
+
+/// Names that only count: files that are numbered, iterations of a solver.
+bool isCounter(const std::string& name) {
+    constexpr std::string_view kCounters[] = {"step", "iteration", "iter", "index", "cycle", "frame", "number", "n"};
+    return std::ranges::find(kCounters, lower(name)) != std::end(kCounters);
+}
+
+/// By the axis of times of both, with its unit converted. Throws Error where the units do not fit.
+Match matchAxis(const DatasetInfo& info, const TimeTable& table) {
     double perTable = 1; // times of the data per time of the table
     if (!table.timeUnit.empty() && !info.timeUnit.empty() && table.timeUnit != info.timeUnit) {
         const auto from = secondsIn(table.timeUnit), to = secondsIn(info.timeUnit);
@@ -190,26 +211,110 @@ void addTable(DatasetInfo& info, const TimeTable& table) {
                         table.file);
         perTable = *from / *to;
     }
-    const std::string name = lower(table.timeName);
-    const bool ofTime = name == "t" || name == "time";
-    if (info.timeName == "step" && ofTime)
-        throw Error("counts time, the files of the data are only numbered: state what the numbers are with "
-                    "--time-name, or their times with --times",
-                    table.file);
-    std::vector<double> times;
-    for (const double time : table.times) times.push_back(withNear(time * perTable, info.times));
-    const std::vector<Quantity> columns = atTimes(table.columns, times, info.times);
-    bool any = false;
-    for (const double time : info.times) any = any || (time >= times.front() && time <= times.back());
-    if (!any)
-        throw Error("has no row at the times of the data: " + std::to_string(times.front()) + " to " +
-                        std::to_string(times.back()) + " against " + std::to_string(info.times.front()) + " to " +
-                        std::to_string(info.times.back()),
-                    table.file);
-    if (info.timeUnit.empty()) info.timeUnit = table.timeUnit;
-    const bool named = info.timeName != DatasetInfo().timeName && info.timeName != "step";
-    if (!named && !ofTime) info.timeName = table.timeName;
-    for (const Quantity& column : columns) setQuantity(info, column);
+    Match out{{}, info.times, table.columns};
+    for (const double time : table.times) out.rows.push_back(withNear(time * perTable, info.times));
+    return out;
+}
+
+/// By a column of the table, which need not be its axis: rows without a number of it are left out. Nothing where it
+/// repeats a number, since then it does not tell its rows apart.
+std::optional<Match> matchColumn(const TimeTable& table, const std::vector<double>& values,
+                                 const std::vector<double>& times) {
+    std::vector<std::size_t> order;
+    for (std::size_t r = 0; r < values.size(); ++r)
+        if (std::isfinite(values[r])) order.push_back(r);
+    std::ranges::sort(order, {}, [&](std::size_t r) { return values[r]; });
+    std::vector<double> known = times;
+    std::erase_if(known, [](double time) { return !std::isfinite(time); });
+    std::ranges::sort(known);
+    Match out{{}, times, {{table.timeName, table.timeUnit, {}}}, false};
+    for (const std::size_t r : order) {
+        const double value = withNear(values[r], known);
+        if (!out.rows.empty() && out.rows.back() == value) return std::nullopt;
+        out.rows.push_back(value);
+        out.columns[0].values.push_back(table.times[r]);
+    }
+    for (const Quantity& column : table.columns) {
+        Quantity& own = out.columns.emplace_back(Quantity{column.name, column.unit, {}});
+        for (const std::size_t r : order) own.values.push_back(column.values[r]);
+    }
+    return out.rows.empty() ? std::nullopt : std::optional(out);
+}
+
+/// Whether any time of the data lies among the rows.
+bool reaches(const Match& match) {
+    return std::ranges::any_of(match.times,
+                               [&](double time) { return time >= match.rows.front() && time <= match.rows.back(); });
+}
+
+/// By a quantity of both that is not the axis of both: a column named as the axis of the data, a counter of both, or a
+/// quantity over time of the data, in the same unit where both state one.
+std::optional<Match> matchShared(const DatasetInfo& info, const TimeTable& table) {
+    std::vector<Quantity> columns = table.columns;
+    columns.insert(columns.begin(), {table.timeName, table.timeUnit, table.times});
+    const auto tried = [&](const Quantity& column, const std::vector<double>& times) -> std::optional<Match> {
+        const auto match = matchColumn(table, column.values, times);
+        return match && reaches(*match) ? match : std::nullopt;
+    };
+    const auto fits = [](const std::string& a, const std::string& b) { return a.empty() || b.empty() || a == b; };
+    for (const Quantity& column : columns)
+        if (lower(column.name) == lower(info.timeName) && fits(column.unit, info.timeUnit))
+            if (auto match = tried(column, info.times)) return match;
+    for (const Quantity& column : table.columns)
+        if (isCounter(column.name) && isCounter(info.timeName))
+            if (auto match = tried(column, info.times)) return match;
+    for (const Quantity& own : info.quantities)
+        for (const Quantity& column : columns)
+            if (lower(column.name) == lower(own.name) && fits(column.unit, own.unit))
+                if (auto match = tried(column, own.values)) return match;
+    return std::nullopt;
+}
+
+std::string namesOf(const std::string& first, const std::string& unit, const std::vector<Quantity>& others) {
+    std::string text = first + (unit.empty() ? "" : " [" + unit + "]");
+    for (const Quantity& each : others) text += ", " + each.name + (each.unit.empty() ? "" : " [" + each.unit + "]");
+    return text;
+}
+
+/// By the axis of both, else by what else both have. Throws Error that says what either has.
+Match matchTable(const DatasetInfo& info, const TimeTable& table) {
+    const bool sameAxis =
+        lower(info.timeName) == lower(table.timeName) || (isClock(info.timeName) && isClock(table.timeName));
+    const std::optional<Match> shared = sameAxis ? std::nullopt : matchShared(info, table);
+    if (shared) return *shared;
+    const bool numbered = isCounter(info.timeName) && isClock(table.timeName);
+    std::string failure;
+    if (numbered)
+        failure = "counts time, the files of the data are only numbered: state what the numbers are with --time-name, "
+                  "or their times with --times";
+    else
+        try {
+            if (Match direct = matchAxis(info, table); reaches(direct)) return direct;
+            failure = "has no row at the times of the data: " + std::to_string(table.times.front()) + " to " +
+                      std::to_string(table.times.back()) + " " + table.timeUnit + " against " +
+                      std::to_string(info.times.front()) + " to " + std::to_string(info.times.back()) + " " +
+                      info.timeUnit;
+        } catch (const Error& error) {
+            failure = error.reason();
+        }
+    if (const auto other = matchShared(info, table)) return *other;
+    throw Error(failure + " (the table has " + namesOf(table.timeName, table.timeUnit, table.columns) +
+                    "; the data have " + namesOf(info.timeName, info.timeUnit, info.quantities) + ")",
+                table.file);
+}
+
+} // namespace
+
+void addTable(DatasetInfo& info, const TimeTable& table) {
+    const Match match = matchTable(info, table);
+    const std::vector<Quantity> columns = atTimes(match.columns, match.rows, match.times);
+    if (match.byAxis) {
+        if (info.timeUnit.empty()) info.timeUnit = table.timeUnit;
+        const bool named = info.timeName != DatasetInfo().timeName && info.timeName != "step";
+        if (!named && !isClock(table.timeName)) info.timeName = table.timeName;
+    }
+    for (const Quantity& column : columns)
+        if (match.byAxis || lower(column.name) != lower(info.timeName)) setQuantity(info, column);
 }
 
 void stateQuantities(DatasetInfo& info, const ImportOptions& options) {

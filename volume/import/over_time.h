@@ -24,9 +24,11 @@ struct TimeTable {
 TimeTable parseTimeTable(std::string_view text, const std::string& file);
 TimeTable readTimeTable(const std::string& path);
 
-/// Adds the columns at the times of the data, linear between rows, not known outside. Units of time are converted where
-/// both state one (ms and s). The name and unit of the axis follow the table where the data do not state them. Throws
-/// Error where the units do not fit or the table has none of the data's times.
+/// Adds the columns at the times of the data, linear between rows, not known outside. Rows and times are matched by the
+/// axis of both, with units of time converted (ms and s); else by what else both have: a column named as the axis of
+/// the data, a counter of both (step, iteration, index), or a quantity over time of the data. The name and unit of the
+/// axis follow the table where the data do not state them. Throws Error, which names what either has, where nothing
+/// fits or the table has none of the data's times.
 void addTable(DatasetInfo& info, const TimeTable& table);
 
 /// Applies what the user states about the time axis and quantities: names, units, a table. Throws Error.

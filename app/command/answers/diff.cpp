@@ -218,7 +218,17 @@ void writePicture(const DiffRequest& request, const DataRef& data, const Progres
     progress.advance(1);
 }
 
+/// Throws Error for a file that is not written, before the work starts.
+void checkDiffOutput(const std::string& path) {
+    constexpr const char* kEndings[] = {".csv", ".png", ".tsr", ".vti", ".vtr", ".pvd", ".nrrd", ".raw"};
+    if (path.empty()) return;
+    if (std::ranges::none_of(kEndings, [&](const char* ending) { return hasEnding(path, ending); }))
+        throw Error("differences are written as .csv, .png, .tsr, .vti, .vtr, .pvd, .nrrd or .raw", path);
+    requireFolderOf(path);
+}
+
 void run(const DiffRequest& request) {
+    checkDiffOutput(request.output);
     const Progress progress = terminalProgress("diff");
     DataRef data = dataRef(request);
     std::vector<std::string> messages;

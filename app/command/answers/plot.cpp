@@ -79,7 +79,8 @@ void run(const PlotRequest& request) {
     } else {
         std::string pane;
         VectorPage page =
-            curvesDrawing(curves, request.time, pageForm(pictureRequest(request.picture, Session{}), Theme::Light));
+            curvesDrawing(curves, request.time, pageForm(pictureRequest(request.picture, Session{}), Theme::Light),
+                          request.view.together);
         page.numbers = curvesOrigin(info, sources.origin, query);
         page.session = printSession(plotDocument(request, data, info, pane), request.output);
         file.write(fileOf(page, pdf ? "pdf" : "svg"));
@@ -107,8 +108,14 @@ void addPlotCommand(CLI::App& app) {
                      "polarisation curve, else every quantity)")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    command->add_option("--region", request->view.region,
-                        "Compute statistics in this region only: its name, or region=1 (default: everywhere)");
+    command
+        ->add_option("--region", request->view.apart,
+                     "Compute statistics in this region only: its name, or region=1; may be repeated, a curve for each "
+                     "(default: everywhere)")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command->add_flag("--together,!--no-together", request->view.together,
+                      "Draw curves of two units in one plot, with an axis on either side (default: yes)");
     command->add_option("--by", request->axis, "Quantity over time to use as the time axis");
     command->add_option("--time", request->time, "Time to mark in a picture");
     addFormOptions(*command, request->picture);

@@ -65,16 +65,13 @@ void checkUsed(const StatsRequest& request) {
 void check(const StatsRequest& request) {
     checkUsed(request);
     const StatsOptions& options = request.options;
-    const bool sections = options.planesAcross(), figure = isFigure(request.output);
-    if (!request.output.empty() && !figure && !hasEnding(request.output, ".csv") && !hasEnding(request.output, ".json"))
+    const bool sections = options.planesAcross();
+    if (!request.output.empty() && !isFigure(request.output) && !hasEnding(request.output, ".csv") &&
+        !hasEnding(request.output, ".json"))
         throw Error("statistics are written as .csv, .svg, .pdf or .json", request.output);
     if (!request.output.empty()) requireFolderOf(request.output);
     if (sections && !options.balance.empty())
         throw Error("balances are of whole regions: omit --along and --line", "--balance");
-    if (figure && !sections && !options.allTimes && options.balance.empty())
-        throw Error("figures need --along, --line, --balance or --all-times", request.output);
-    if (figure && sections && options.allTimes)
-        throw Error("a figure shows one time: choose it with --time", request.output);
 }
 
 std::string jsonOf(const Question& question, const Answer& answer) {
@@ -90,17 +87,19 @@ std::string jsonOf(const Question& question, const Answer& answer) {
            "\n";
 }
 
+std::string figureFile(const StatsRequest& request, const Question& question, const std::vector<Plot>& panels) {
+    VectorPage drawing = plotPage(panels, 2, {});
+    drawing.numbers = question.origin();
+    return fileOf(drawing, hasEnding(request.output, ".pdf") ? "pdf" : "svg");
+}
+
 /// Writes the answer for all requested times to the file asked for, if any.
 void write(const StatsRequest& request, const Question& question, const Answer& answer) {
     const std::string& path = request.output;
-    if (path.empty()) return;
-    const std::string origin = question.origin(), line = "# numbers: " + origin + "\n";
-    const auto figure = [&] {
-        VectorPage drawing =
-            plotPage(request.options.planesAcross() ? answer.panels : figureOf(question, answer.json), 2, {});
-        drawing.numbers = origin;
-        return fileOf(drawing, hasEnding(path, ".pdf") ? "pdf" : "svg");
-    };
+    if (path.empty() || (isFigure(path) && request.options.planesAcross()))
+        return; // that is drawn for all times at once
+    const std::string line = "# numbers: " + question.origin() + "\n";
+    const auto figure = [&] { return figureFile(request, question, figureOf(question, answer.json)); };
     writeAtomically(path, isFigure(path)            ? figure()
                           : hasEnding(path, ".csv") ? line + answer.csv
                                                     : jsonOf(question, answer));
@@ -122,6 +121,10 @@ void run(const StatsRequest& request) {
     const Question question = questionOf(request, openInput(data, progress.part(0.1, 0.3)));
     rememberStated(request.import, question.info().name);
     const Progress rest = progress.part(0.3, 1);
+    if (isFigure(request.output) && request.options.planesAcross()) {
+        writeAtomically(request.output, figureFile(request, question, sectionFigure(request, question, rest)));
+        if (!request.options.json) return progress.advance(1);
+    }
     if (question.times.size() == 1) {
         const Answer answer = answerAt(request, question, question.times.front(), true, rest);
         write(request, question, answer);
@@ -156,6 +159,7 @@ void addStatsCommand(CLI::App& app) {
         ->required();
     command->add_option("-o,--output", request->output, "File to write: .csv, .svg, .pdf or .json");
     addDescribed(*command, request->options);
+    command->get_option("--time")->expected(1)->delimiter(',')->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     addDeriveOption(*command, request->derived);
     addImportOptions(*command, request->import);
     addRemoteOptions(*command, request->remote);

@@ -3,10 +3,12 @@
 #include "app/pane/view_parts.h"
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
 #include "app/values/table_json.h"
 #include "app/views/curves/section_data.h"
 #include "app/views/statistics/region_data.h"
 #include "codec/container/json_text.h"
+#include "volume/base/error.h"
 #include "volume/base/unit_product.h"
 #include "volume/flow/flow_channels.h"
 
@@ -47,6 +49,23 @@ Json numberOrNull(double value) {
     return std::isfinite(value) ? Json(value) : Json();
 }
 
+/// What a legend calls one of several requested times.
+std::string stateName(const Question& question, double time) {
+    const auto at = std::ranges::find(question.times, time) - question.times.begin();
+    return stateNames(question.info(), question.times)[std::size_t(at)];
+}
+
+/// Behind the time, where several are requested.
+void addState(Table& table, const Question& question, double time) {
+    if (question.times.size() < 2) return;
+    const std::vector<std::string> texts(rowsOf(table), stateName(question, time));
+    table.columns.insert(table.columns.begin() + 1, {.name = "state", .shown = false, .texts = texts});
+}
+
+void addState(Json& row, const Question& question, double time) {
+    if (question.times.size() > 1) row["state"] = stateName(question, time);
+}
+
 Answer sectionsAt(const StatsRequest& request, const Question& question, double time, bool first,
                   const Progress& progress) {
     Answer answer;
@@ -54,9 +73,12 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
     const SectionMeasure show = request.options.show;
     const SectionCurves curves =
         readSections(question.source, sectionCurvesQuery(request, question, time), progress, question.from);
-    answer.csv = csvOf(sectionTable(info, curves), first);
+    Table table = sectionTable(info, {curves});
+    addState(table, question, time);
+    answer.csv = csvOf(table, first);
     answer.notes = sectionNotes(info, curves);
-    answer.panels = sectionPanels(info, curves, show);
+    if (curves.velocity.empty() && (show == SectionMeasure::Flux || show == SectionMeasure::Flow))
+        throw Error("a flux needs a velocity, and no vector has the name or unit of one");
     const std::vector<CurveLook> looks = curveLooks(info, curves.query);
     const std::vector<volume::Channel> channels = info.channels();
     const auto& places = curves.sections.place;
@@ -85,6 +107,7 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
                 for (const auto& value : values)
                     of["errors"].push_back(numberOrNull(errorOf(curves, c, value, SectionMeasure(m), own.factor)));
             }
+            addState(entry, question, time);
             answer.json.push_back(std::move(entry));
             const auto valueOf = [&](const auto& plane) {
                 return plane.area > 0 ? measured(plane, show, unit.factor) : std::nan("");
@@ -109,8 +132,12 @@ Answer answerOf(Table table, const Question& question, double time, bool first) 
     answer.notes = table.notes;
     answer.json = jsonOf(table);
     answer.units = unitsOf(table);
-    for (Json& row : answer.json) row["time"] = time;
+    for (Json& row : answer.json) {
+        row["time"] = time;
+        addState(row, question, time);
+    }
     if (question.several()) addTime(table, question.info().timeName, question.info().timeUnit, time);
+    addState(table, question, time);
     answer.csv = csvOf(table, first);
     return answer;
 }
@@ -187,31 +214,39 @@ void addAnswer(Answer& sum, const std::string& later) {
     sum.notes = answer["notes"].get<std::vector<std::string>>();
 }
 
+std::vector<Plot> sectionFigure(const StatsRequest& request, const Question& question, const Progress& progress) {
+    std::vector<SectionCurves> states;
+    const auto count = static_cast<double>(question.times.size());
+    for (const double time : question.times) {
+        const auto done = static_cast<double>(states.size());
+        states.push_back(readSections(question.source, sectionCurvesQuery(request, question, time),
+                                      progress.part(done / count, (done + 1) / count), question.from));
+    }
+    return sectionPanels(question.info(), states, request.options.show);
+}
+
 std::vector<Plot> figureOf(const Question& question, const Json& rows) {
     const std::vector<double>& times = question.times;
-    const bool balance = question.balance >= 0, bars = balance && times.size() == 1;
+    const bool balance = question.balance >= 0, one = times.size() == 1;
     const PlotAxis overTime{question.timeTitle(), {times.front(), times.back()}};
     std::vector<std::pair<std::string, Plot>> panels;
     for (const Json& row : rows) {
         const std::string parameter = row["parameter"], unit = row["unit"], region = row["region"];
-        const double time = row["time"];
-        if (balance) {
-            const std::string surface = row["surface"];
-            const PlotAxis up{.title = "out - in of " + parameter, .range = {0, 0}, .unit = unit};
-            Plot& panel = panelOf(panels, region, {region, overTime, up, {}, {}});
-            PlotSeries& line = lineOf(panel, surface, {surface, {}, labelColor({}, int(panel.series.size()) + 1)});
-            line.bars = bars;
-            addPoint(panel, line, bars ? double(&line - panel.series.data()) + 1 : time, numberOf(row["net"]));
-        } else {
-            const PlotAxis up{.title = "mean of " + parameter, .range = {HUGE_VAL, -HUGE_VAL}, .unit = unit};
-            Plot& panel = panelOf(panels, parameter, {{}, overTime, up, {}, {}});
-            addPoint(panel, lineOf(panel, region, {region, {}, colorOf(question, region)}), time,
-                     numberOf(row["mean"]));
-        }
+        const std::string key = balance ? region : parameter, name = balance ? std::string(row["surface"]) : region;
+        const PlotAxis up{.title = (balance ? "out - in of " : "mean of ") + parameter,
+                          .range = balance ? Range{0, 0} : Range{HUGE_VAL, -HUGE_VAL},
+                          .unit = unit};
+        Plot& panel = panelOf(panels, key, {balance ? region : std::string(), overTime, up, {}, {}});
+        const glm::vec3 color = balance ? labelColor({}, int(panel.series.size()) + 1) : colorOf(question, region);
+        PlotSeries& line = lineOf(panel, name, {name, {}, color});
+        line.bars = one && balance;
+        line.dots = one;
+        addPoint(panel, line, one ? double(&line - panel.series.data()) + 1 : double(row["time"]),
+                 numberOf(row[balance ? "net" : "mean"]));
     }
     std::vector<Plot> out;
     for (auto& [key, panel] : panels) {
-        if (bars) panel.x = {"surface", {0.5, double(panel.series.size()) + 0.5}, false};
+        if (one) panel.x = {balance ? "surface" : "region", {0.5, double(panel.series.size()) + 0.5}, false};
         panel.y.range = paddedRange(panel.y.range, 0.05);
         out.push_back(std::move(panel));
     }

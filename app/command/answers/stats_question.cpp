@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 #include <utility>
 
 namespace tessera::app {
@@ -69,6 +70,15 @@ void findKnown(Question& question, const StatsOptions& options) {
     }
 }
 
+/// The requested times in order, each once.
+std::vector<double> timesOf(const StatsOptions& options, const volume::DatasetInfo& info) {
+    if (options.allTimes) return info.times;
+    if (options.time.empty()) return {info.times.back()};
+    std::set<double> times;
+    for (const double time : options.time) times.insert(timeWithin(info, time));
+    return {times.begin(), times.end()};
+}
+
 } // namespace
 
 Question questionOf(const StatsRequest& request, const Sources& sources) {
@@ -99,9 +109,7 @@ Question questionOf(const StatsRequest& request, const Sources& sources) {
     }
     if (!options.along.empty() && options.along != "x" && options.along != "y" && options.along != "z")
         throw Error("needs x, y or z, not \"" + options.along + "\"", "--along");
-    out.times = options.allTimes
-                    ? info.times
-                    : std::vector<double>{options.time ? timeWithin(info, *options.time) : info.times.back()};
+    out.times = timesOf(options, info);
     findKnown(out, options);
     return out;
 }

@@ -18,7 +18,7 @@
 namespace tessera::app {
 
 struct StatsOptions {
-    std::optional<double> time;
+    std::vector<double> time;
     bool allTimes = false;
     std::string by, of, along, line, balance, velocity, regions;
     volume::SectionWeight weight = volume::SectionWeight::Area;
@@ -27,8 +27,8 @@ struct StatsOptions {
     bool json = false;
     bool planesAcross() const { return !along.empty() || !line.empty(); }
     static void describe(auto& self, auto&& visit) {
-        visit(self.time, FieldInfo{"time", "Time, in the unit of the data (default: the last)"});
-        visit(self.allTimes, FieldInfo{"allTimes", "Every time instead of one"});
+        visit(self.time, FieldInfo{"time", "Time, in the unit of the data, or several: 0.1,0.26 (default: the last)"});
+        visit(self.allTimes, FieldInfo{"allTimes", "Every time"});
         visit(self.by,
               FieldInfo{"by", "Label whose values are the regions, or none (default: the first label of the data)"});
         visit(self.regions, FieldInfo{"regions", "Only these regions, by name or value: cathode,3"});

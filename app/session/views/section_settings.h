@@ -23,6 +23,7 @@ struct SectionSettings {
     SectionMeasure measure = SectionMeasure::Mean;
     bool byRegion = true;
     std::vector<int> regions; ///< values of the label shown; none: every one
+    bool everything = false;  ///< a curve beside that of the selection
     bool operator==(const SectionSettings&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.across,
@@ -36,6 +37,7 @@ struct SectionSettings {
               FieldInfo{.key = "measure", .doc = "Quantity shown for every plane", .names = kSectionMeasureNames});
         visit(self.byRegion, FieldInfo{"byRegion", "One curve for each region of the label"});
         visit(self.regions, FieldInfo{"regions", "Values of the label that have a curve; empty: all"});
+        visit(self.everything, FieldInfo{"everything", "Beside each curve of the selection one of everything"});
     }
 };
 

@@ -91,7 +91,8 @@ struct HistogramView {
     std::string channel; ///< "" = the channel of the first layer
     int bins = 192;
     bool logCounts = false;
-    float softness = 0.05f; ///< soft edge of new brushes, as a share of their width
+    float softness = 0.05f;    ///< soft edge of new brushes, as a share of their width
+    std::vector<double> times; ///< with a line each; empty: the time shown
     bool operator==(const HistogramView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
@@ -100,6 +101,8 @@ struct HistogramView {
         visit(self.softness, FieldInfo{.key = "softness",
                                        .doc = "Soft edge of new brushes, as a share of their width",
                                        .range = Range{0, 1}});
+        visit(self.times,
+              FieldInfo{.key = "times", .doc = "Times with a line each; empty: the time shown", .unit = kUnitOfTimes});
     }
 };
 DrawView<HistogramView> drawHistogramView;
@@ -116,7 +119,8 @@ struct ProfileView {
     ProfileOver over = ProfileOver::Line;
     std::vector<glm::dvec3> points; ///< corners; fewer than two: the longest axis through the cursor
     int samples = 256;
-    SectionSettings sections; ///< over planes
+    SectionSettings sections;  ///< over planes
+    std::vector<double> times; ///< with a curve each, along the line and over planes; empty: the time shown
     bool operator==(const ProfileView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channels, kShownChannels);
@@ -130,6 +134,10 @@ struct ProfileView {
         visit(self.samples,
               FieldInfo{.key = "samples", .doc = "Number of points along the line", .range = Range{16, 4096}});
         visit(self.sections, FieldInfo{"sections", "Averages over planes"});
+        visit(self.times, FieldInfo{.key = "times",
+                                    .doc = "Times with a curve each along the line and over planes; empty: the time "
+                                           "shown",
+                                    .unit = kUnitOfTimes});
     }
 };
 DrawView<ProfileView> drawProfileView;
@@ -140,8 +148,10 @@ struct CurvesView {
     std::string x; ///< formula, or "time"; "" = chosen to fit the curves
     std::vector<std::string>
         y; ///< formulas; empty: the polarisation curve if the data have one, else every quantity, else a mean
-    std::string region;   ///< statistics are of this region of a label, by name or value; "" = everywhere
-    bool brushed = false; ///< and of what the brushes select
+    std::string region;             ///< statistics are of this region of a label, by name or value; "" = everywhere
+    std::vector<std::string> apart; ///< regions with a curve each, instead of that one
+    bool brushed = false;           ///< and of what the brushes select
+    bool together = true;           ///< curves of two units share a plot
     bool operator==(const CurvesView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.x,
@@ -150,7 +160,11 @@ struct CurvesView {
                                      "volume(T), integral(T), or formulas of them; empty: the polarisation curve, "
                                      "else every quantity, else a mean"});
         visit(self.region, FieldInfo{"region", "Region in which statistics are computed; empty: everywhere"});
+        visit(self.apart,
+              FieldInfo{"apart", "Regions with a curve of each statistic, by name or value; empty: that of `region`"});
         visit(self.brushed, FieldInfo{"brushed", "Compute statistics of the selection"});
+        visit(self.together,
+              FieldInfo{"together", "Draw curves of two units in one plot, with an axis on either side"});
     }
 };
 DrawView<CurvesView> drawCurvesView;

@@ -25,12 +25,14 @@ std::string argumentOf(const std::string& formula) {
     return one ? formula.substr(open + 1, formula.size() - open - 2) : std::string();
 }
 
-volume::CurvesQuery queryOf(const PlotCurvesQuery& asked, const volume::DatasetInfo& info) {
+volume::CurvesQuery queryOf(const PlotCurvesQuery& asked, const volume::DatasetInfo& info, const LabelRegion* region) {
     volume::CurvesQuery query;
     query.x = asked.x;
     query.y = asked.y;
-    query.label = asked.label;
-    query.regions = asked.regions;
+    if (region != nullptr) {
+        query.label = region->label;
+        query.regions = {region->value};
+    }
     if (asked.brushes.selection.active()) {
         query.doi = samplesQuery(asked.brushes, info, 0).doi;
         query.doiChannels = asked.brushes.channels;
@@ -39,7 +41,20 @@ volume::CurvesQuery queryOf(const PlotCurvesQuery& asked, const volume::DatasetI
 }
 
 std::string labelOf(const volume::DatasetInfo& info, const PlotCurvesQuery& asked) {
-    return asked.label >= 0 ? info.channel(asked.label).name : std::string();
+    return asked.regions.empty() ? std::string() : info.channel(asked.regions.front().label).name;
+}
+
+/// Whether a formula has a statistic of a parameter in it, which depends on the region.
+bool hasStatistic(const std::string& formula) {
+    constexpr std::string_view kStatistics[] = {"mean(",  "min(",    "max(",     "deviation(",
+                                                "share(", "volume(", "integral("};
+    return std::ranges::any_of(kStatistics, [&](std::string_view word) { return formula.find(word) != formula.npos; });
+}
+
+constexpr std::string_view kIn = ") in "; ///< before the region in the name of a curve
+
+std::string withoutRegion(const std::string& name) {
+    return name.substr(0, std::min(name.size(), name.find(kIn) + (name.find(kIn) == name.npos ? 0 : 1)));
 }
 
 bool sameAxis(const volume::Curves& curves) {
@@ -112,12 +127,12 @@ CurvesView resolvedCurves(const CurvesView& view, const volume::DatasetInfo& inf
 
 PlotCurvesQuery plotCurvesQuery(const CurvesView& view, const Session& session, const volume::DatasetInfo& info) {
     const CurvesView resolved = resolvedCurves(view, info);
-    PlotCurvesQuery query{resolved.x, resolved.y, -1, {}, {}};
-    if (!view.region.empty()) {
-        const LabelRegion region = findRegion(info, view.region);
-        query.label = region.label;
-        query.regions = {region.value};
+    PlotCurvesQuery query{resolved.x, resolved.y, {}, {}};
+    for (const std::string& name : view.apart) {
+        const LabelRegion region = findRegion(info, name);
+        if (std::ranges::find(query.regions, region) == query.regions.end()) query.regions.push_back(region);
     }
+    if (!view.region.empty() && query.regions.empty()) query.regions = {findRegion(info, view.region)};
     if (view.brushed) {
         query.brushes = brushedQuery(session, info, {}, {}, 1, false);
         query.brushes.time = {};
@@ -126,25 +141,73 @@ PlotCurvesQuery plotCurvesQuery(const CurvesView& view, const Session& session, 
     return query;
 }
 
-volume::Curves readCurves(const volume::BrickSource& source, const NumberOrigin& origin, const PlotCurvesQuery& asked,
-                          const Progress& progress) {
+namespace {
+
+volume::Curves readCurvesOf(const volume::BrickSource& source, const NumberOrigin& origin, const PlotCurvesQuery& asked,
+                            const LabelRegion* region, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
-    volume::CurvesQuery query = queryOf(asked, info);
-    if (origin.computed && asked.regions.size() <= 1)
+    volume::CurvesQuery query = queryOf(asked, info, region);
+    const std::string label = region != nullptr ? info.channel(region->label).name : std::string();
+    if (origin.computed)
         query.known = [&](int channel, int time) -> std::optional<volume::ChannelStatistics> {
-            const auto known = volume::knownStatistics(*origin.computed, info.times[std::size_t(time)],
-                                                       labelOf(info, asked), {info.channel(channel).name});
+            const auto known = volume::knownStatistics(*origin.computed, info.times[std::size_t(time)], label,
+                                                       {info.channel(channel).name});
             if (!known) return std::nullopt;
             volume::ChannelStatistics out;
             out.all = known->all.front();
             constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
             out.inside = {0, 0, kNone, kNone, kNone, kNone, 0};
             for (std::size_t r = 0; r < known->regions.size(); ++r)
-                if (!asked.regions.empty() && known->regions[r] == asked.regions.front())
-                    out.inside = known->summary[r].front();
+                if (region != nullptr && known->regions[r] == region->value) out.inside = known->summary[r].front();
             return out;
         };
     return volume::computeCurves(source, query, progress);
+}
+
+/// As people read it: names need no back quotes.
+void dropQuotes(volume::Curve& curve) {
+    std::erase(curve.name, '`');
+}
+
+} // namespace
+
+volume::Curves readCurves(const volume::BrickSource& source, const NumberOrigin& origin, const PlotCurvesQuery& asked,
+                          const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    const std::size_t count = asked.regions.size();
+    if (count > 1 && hasStatistic(asked.x))
+        throw Error("curves of several regions need a horizontal axis that is the same for all: time or a quantity", {},
+                    asked.x);
+    volume::Curves out = readCurvesOf(source, origin, asked, count > 0 ? &asked.regions[0] : nullptr,
+                                      progress.part(0, 1 / double(std::max<std::size_t>(1, count))));
+    const auto nameRegion = [&](volume::Curve& curve, std::size_t r) {
+        curve.name +=
+            " in " + volume::labelName(volume::parameterOf(info, asked.regions[r].label), asked.regions[r].value);
+    };
+    std::vector<volume::Curve> curves;
+    for (std::size_t y = 0; y < out.y.size(); ++y) {
+        curves.push_back(out.y[y]);
+        if (count > 0 && hasStatistic(asked.y[y])) nameRegion(curves.back(), 0);
+    }
+    for (std::size_t r = 1; r < count; ++r) {
+        const volume::Curves other =
+            readCurvesOf(source, origin, asked, &asked.regions[r],
+                         progress.part(double(r) / double(count), double(r + 1) / double(count)));
+        for (std::size_t y = 0; y < other.y.size(); ++y) {
+            if (!hasStatistic(asked.y[y])) continue;
+            curves.push_back(other.y[y]);
+            nameRegion(curves.back(), r);
+        }
+    }
+    // A parameter that a region does not have has no curve there, unless it has none at all.
+    const auto empty = [](const volume::Curve& curve) {
+        return std::ranges::none_of(curve.values, [](double value) { return std::isfinite(value); });
+    };
+    if (count > 1 && !std::ranges::all_of(curves, empty)) std::erase_if(curves, empty);
+    out.y = std::move(curves);
+    dropQuotes(out.x);
+    for (volume::Curve& curve : out.y) dropQuotes(curve);
+    return out;
 }
 
 namespace {
@@ -152,8 +215,9 @@ namespace {
 /// What statistics are of: ", in anode channel, of starved"; "": everything.
 std::string placeOf(const volume::DatasetInfo& info, const PlotCurvesQuery& asked) {
     std::string text;
-    for (const int value : asked.regions)
-        text += (text.empty() ? ", in " : " and ") + volume::labelName(volume::parameterOf(info, asked.label), value);
+    for (const LabelRegion& region : asked.regions)
+        text += (text.empty() ? ", in " : " and ") +
+                volume::labelName(volume::parameterOf(info, region.label), region.value);
     return text + (asked.brushes.selection.active() ? ", of " + asked.brushes.selection.name : "");
 }
 
@@ -191,13 +255,16 @@ std::vector<std::vector<std::size_t>> curveGroups(const volume::Curves& curves) 
 }
 
 std::string groupTitle(const volume::Curves& curves, const std::vector<std::size_t>& group) {
-    std::string names, shared = argumentOf(curves.y[group.front()].name);
+    std::vector<std::string> names;
+    std::string list, shared = argumentOf(withoutRegion(curves.y[group.front()].name));
     for (const std::size_t y : group) {
-        const std::string& name = curves.y[y].name;
-        names += (names.empty() ? "" : ", ") + name;
+        const std::string name = withoutRegion(curves.y[y].name);
         if (argumentOf(name) != shared) shared.clear();
+        if (std::ranges::find(names, name) != names.end()) continue;
+        names.push_back(name);
+        list += (list.empty() ? "" : ", ") + name;
     }
-    return group.size() > 1 && !shared.empty() ? shared : names;
+    return names.size() > 1 && !shared.empty() ? shared : list;
 }
 
 glm::dvec2 curvePoint(const volume::Curves& curves, std::size_t y, double time) {
@@ -219,37 +286,67 @@ Table curvesTable(const volume::Curves& curves) {
     return table;
 }
 
-std::vector<Plot> curvesPlots(const volume::Curves& curves, std::optional<double> time, bool dark) {
+namespace {
+
+/// Adds the curves of a group; `first`: how many inks others have used. Returns their axis.
+PlotAxis addGroup(Plot& plot, const volume::Curves& curves, const std::vector<std::size_t>& group,
+                  std::optional<double> time, bool dark, std::size_t first) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Range range{kInfinity, -kInfinity};
+    for (std::size_t n = 0; n < group.size(); ++n) {
+        const volume::Curve& curve = curves.y[group[n]];
+        range = rangeOf(curve.values, range);
+        PlotSeries& line = plot.series.emplace_back();
+        line.name = titleWithUnit(curve.name, curve.unit);
+        line.color = plotInk(first + n, dark);
+        line.dots = true;
+        for (std::size_t t = 0; t < curves.times.size(); ++t)
+            line.points.push_back({curves.x.values[t], curve.values[t]});
+        if (!time) continue;
+        plot.marks.push_back(curvePoint(curves, group[n], *time));
+        if (std::isfinite(plot.marks.back().y)) line.value = groupedNumber(plot.marks.back().y);
+    }
+    return {
+        .title = groupTitle(curves, group), .range = paddedRange(range, 0.06), .unit = curves.y[group.front()].unit};
+}
+
+/// Moves what was added for another axis there: its series, and its marks to their places on the left one.
+void turnRight(Plot& plot, const PlotAxis& axis, std::size_t firstSeries, std::size_t firstMark) {
+    for (std::size_t i = firstSeries; i < plot.series.size(); ++i) plot.series[i].right = true;
+    const Range from = axis.range, to = plot.y.range;
+    for (std::size_t i = firstMark; i < plot.marks.size(); ++i)
+        plot.marks[i].y = to.lo + (plot.marks[i].y - from.lo) / (from.hi - from.lo) * (to.hi - to.lo);
+    plot.right = axis;
+    if (firstSeries == 1) plot.y.ink = plot.series.front().color;
+    if (plot.series.size() == firstSeries + 1) plot.right->ink = plot.series.back().color;
+}
+
+} // namespace
+
+std::vector<Plot> curvesPlots(const volume::Curves& curves, std::optional<double> time, bool dark, bool together) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::vector<Plot> plots;
-    for (const std::vector<std::size_t>& group : curveGroups(curves)) {
+    const std::vector<std::vector<std::size_t>> groups = curveGroups(curves);
+    for (const std::vector<std::size_t>& group : groups) {
+        if (together && groups.size() == 2 && !plots.empty()) {
+            Plot& shared = plots.front();
+            const std::size_t series = shared.series.size(), marks = shared.marks.size();
+            const PlotAxis axis = addGroup(shared, curves, group, time, dark, series);
+            turnRight(shared, axis, series, marks);
+            continue;
+        }
         Plot& plot = plots.emplace_back();
         plot.x = {.title = curves.x.name == "time" ? "t" : curves.x.name,
                   .range = paddedRange(rangeOf(curves.x.values, {kInfinity, -kInfinity}), 0.04),
                   .unit = curves.x.unit};
-        Range range{kInfinity, -kInfinity};
-        for (std::size_t n = 0; n < group.size(); ++n) {
-            const volume::Curve& curve = curves.y[group[n]];
-            range = rangeOf(curve.values, range);
-            PlotSeries& line = plot.series.emplace_back();
-            line.name = titleWithUnit(curve.name, curve.unit);
-            line.color = plotInk(n, dark);
-            line.dots = true;
-            for (std::size_t t = 0; t < curves.times.size(); ++t)
-                line.points.push_back({curves.x.values[t], curve.values[t]});
-            if (!time) continue;
-            plot.marks.push_back(curvePoint(curves, group[n], *time));
-            if (std::isfinite(plot.marks.back().y)) line.value = groupedNumber(plot.marks.back().y);
-        }
-        plot.y = {.title = groupTitle(curves, group),
-                  .range = paddedRange(range, 0.06),
-                  .unit = curves.y[group.front()].unit};
+        plot.y = addGroup(plot, curves, group, time, dark, 0);
     }
     return plots;
 }
 
-VectorPage curvesDrawing(const volume::Curves& curves, std::optional<double> time, const PageForm& form) {
-    return plotPage(curvesPlots(curves, time, form.dark), 0, form);
+VectorPage curvesDrawing(const volume::Curves& curves, std::optional<double> time, const PageForm& form,
+                         bool together) {
+    return plotPage(curvesPlots(curves, time, form.dark, together), 0, form);
 }
 
 } // namespace tessera::app

@@ -109,20 +109,34 @@ void chooseCurves(const volume::DatasetInfo& info, const CurvesView& resolved, C
     ImGui::EndCombo();
 }
 
-void chooseRegion(ToolRow& tools, const volume::DatasetInfo& info, CurvesView& view) {
+void chooseRegion(ToolRow& tools, const volume::DatasetInfo& info, const PlotCurvesQuery& query, CurvesView& view) {
     const std::vector<LabelRegion> regions = labelRegions(info);
     if (regions.empty()) return;
     if (!tools.next(em() * 8)) return;
     ImGui::SetNextItemWidth(em() * 8);
-    if (ImGui::BeginCombo("##region", view.region.empty() ? "everywhere" : view.region.c_str())) {
-        if (ImGui::Selectable("everywhere", view.region.empty())) view.region.clear();
+    const std::size_t count = query.regions.size();
+    const std::string shown = count == 0   ? "everywhere"
+                              : count == 1 ? query.regions.front().name
+                                           : std::to_string(count) + " regions";
+    if (ImGui::BeginCombo("##region", shown.c_str(), ImGuiComboFlags_HeightLarge)) {
+        std::vector<LabelRegion> chosen = query.regions;
+        if (ImGui::Selectable("everywhere", count == 0)) chosen.clear();
+        if (ImGui::Selectable("every region")) chosen = regions;
+        ImGui::Separator();
         for (const LabelRegion& region : regions) {
-            const volume::Channel channel = info.channel(region.label);
-            if (ImGui::Selectable(region.name.c_str())) view.region = channel.name + "=" + std::to_string(region.value);
+            bool on = std::ranges::find(chosen, region) != chosen.end();
+            if (!ImGui::Checkbox(region.name.c_str(), &on)) continue;
+            if (std::erase(chosen, region) == 0) chosen.push_back(region);
+        }
+        if (chosen != query.regions) {
+            view.region.clear();
+            view.apart.clear();
+            for (const LabelRegion& region : chosen)
+                view.apart.push_back(info.channel(region.label).name + "=" + std::to_string(region.value));
         }
         ImGui::EndCombo();
     } else if (ImGui::IsItemHovered()) {
-        tooltip("Region in which statistics are computed");
+        tooltip("Regions in which statistics are computed, a curve each");
     }
 }
 
@@ -133,10 +147,14 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
     ToolRow tools(context);
     if (tools.next(em() * 6.5f)) chooseCurves(info, resolved, view, cache.draft);
     if (tools.next(em() * 9)) chooseAcross(info, resolved, view);
-    chooseRegion(tools, info, view);
+    chooseRegion(tools, info, query, view);
     if (context.session.selection.active() && tools.next(em() * 6)) {
         ImGui::Checkbox("selected", &view.brushed);
         if (ImGui::IsItemHovered()) tooltip("Compute statistics of the selection");
+    }
+    if (curves && curveGroups(*curves).size() == 2 && tools.next(checkboxWidth("one plot"))) {
+        ImGui::Checkbox("one plot", &view.together);
+        if (ImGui::IsItemHovered()) tooltip("Draw curves of two units in one plot, with an axis on either side");
     }
     const volume::CellQuantities cell = volume::cellQuantities(info);
     if (!cell.voltage.empty() && !cell.current.empty()) {
@@ -158,10 +176,11 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
     if (curves) {
         exportMenu(context, tools,
                    {.name = "curves",
-                    .figure = [curves, time = context.session.time](
-                                  const PageForm& form, const Progress&) { return curvesDrawing(*curves, time, form); },
+                    .figure = [curves, time = context.session.time, together = view.together](
+                                  const PageForm& form,
+                                  const Progress&) { return curvesDrawing(*curves, time, form, together); },
                     .table = [curves](const Progress&) { return curvesTable(*curves); },
-                    .brushed = query.brushes.selection.active()},
+                     .brushed = query.brushes.selection.active()},
                    false, curvesOrigin(info, context.origin, query));
     }
 }
@@ -174,7 +193,9 @@ std::optional<std::size_t> timeUnderMouse(const std::vector<Plot>& plots, const 
     for (std::size_t i = 0; i < plots.size(); ++i)
         for (const PlotSeries& series : plots[i].series)
             for (std::size_t t = 0; t < series.points.size(); ++t) {
-                const ImVec2 at = column.frames[i].pixel(series.points[t].x, series.points[t].y);
+                PlotFrame frame = column.frames[i];
+                frame.y = plots[i].upOf(series).range;
+                const ImVec2 at = frame.pixel(series.points[t].x, series.points[t].y);
                 const float away = std::hypot(at.x - mouse.x, at.y - mouse.y);
                 if (!(away <= least)) continue;
                 least = away;
@@ -184,11 +205,12 @@ std::optional<std::size_t> timeUnderMouse(const std::vector<Plot>& plots, const 
 }
 
 /// The plots below each other over one axis; a click on a point goes to its time.
-void drawPlots(ViewContext& context, const volume::Curves& curves) {
+void drawPlots(ViewContext& context, const volume::Curves& curves, bool together) {
     Session& session = context.session;
-    const std::vector<Plot> plots =
-        curvesPlots(curves, context.decoration.cursor ? std::optional(session.time) : std::nullopt, darkTheme());
-    const std::optional<PlotColumn> column = placePlots(plots);
+    const bool wide = ImGui::GetContentRegionAvail().x > em() * 20;
+    const std::vector<Plot> plots = curvesPlots(
+        curves, context.decoration.cursor ? std::optional(session.time) : std::nullopt, darkTheme(), together && wide);
+    const std::optional<PlotColumn> column = placePlots(plots, rightAxisRoom(plots.front()));
     if (!column) return;
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     for (std::size_t i = 0; i < plots.size(); ++i)
@@ -232,7 +254,7 @@ void drawCurvesView(ViewContext& context, const std::string& pane, CurvesView& v
     if (failure.empty()) failure = cache.answers.failure();
     if (!curves && !failure.empty()) return drawHint("No values", failure.c_str());
     if (!curves) return ImGui::TextDisabled("Reading...");
-    drawPlots(context, *curves);
+    drawPlots(context, *curves, view.together);
 }
 
 } // namespace tessera::app

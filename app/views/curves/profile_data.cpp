@@ -76,6 +76,8 @@ Profile readProfile(const volume::BrickSource& source, const ProfileQuery& query
                 .positions = volume::alongPolyline(query.corners, query.samples),
                 .times = line ? std::vector<double>{} : source.info().times,
                 .values = {}};
+    for (const volume::TimePair& time : query.times)
+        if (line) out.times.push_back(volume::timeAt(source.info().times, time));
     double length = 0;
     for (std::size_t i = 1; i < query.corners.size(); ++i)
         length += glm::distance(query.corners[i - 1], query.corners[i]);
@@ -86,14 +88,14 @@ Profile readProfile(const volume::BrickSource& source, const ProfileQuery& query
         for (std::size_t i = 0; i < out.positions.size(); ++i)
             out.positions[i] = placeAlong(query.corners, out.distance[i]);
     }
-    const std::size_t rows = line ? 1 : out.times.size();
+    const std::size_t rows = out.times.size();
     for (const int channel : query.channels) {
         std::vector<double>& values = out.values.emplace_back();
         for (std::size_t row = 0; row < rows; ++row) {
             progress.advance((static_cast<double>(out.values.size() - 1) + static_cast<double>(row) / double(rows)) /
                              static_cast<double>(query.channels.size()));
             const int t = static_cast<int>(row);
-            const volume::TimePair time = line ? query.time : volume::TimePair{t, t, 0};
+            const volume::TimePair time = line ? query.times[row] : volume::TimePair{t, t, 0};
             for (const volume::ProbeValue& value : volume::probeAlong(source, channel, out.positions, time))
                 values.push_back(value.interpolated.value_or(std::nan("")));
         }
@@ -127,7 +129,8 @@ LineAxis lineAxis(const Session& session, const volume::DatasetInfo& info, const
 }
 
 Table profileTable(const volume::DatasetInfo& info, const Session& session, const Profile& profile) {
-    const bool timed = profile.query.over != ProfileOver::Line;
+    const bool several = profile.query.over == ProfileOver::Line && profile.times.size() > 1;
+    const bool timed = profile.query.over != ProfileOver::Line || several;
     const LineAxis along = lineAxis(session, info, profile);
     Table table;
     if (timed) table.columns.push_back({.name = info.timeName, .unit = info.timeUnit});
@@ -142,17 +145,21 @@ Table profileTable(const volume::DatasetInfo& info, const Session& session, cons
                                  .unit = time ? label.unit.name : info.lengthUnit});
     }
     const std::size_t first = table.columns.size(), places = profile.positions.size();
+    const std::vector<std::string> names = stateNames(info, profile.times);
+    std::vector<std::string> states;
     for (const int channel : profile.query.channels)
         table.columns.push_back({.name = info.channel(channel).name, .unit = info.channel(channel).unit});
     for (std::size_t row = 0; row < (timed ? profile.times.size() : 1); ++row)
         for (std::size_t i = 0; i < places; ++i) {
             std::size_t column = 0;
+            if (several) states.push_back(names[row]);
             const auto add = [&](double value) { table.columns[column++].numbers.push_back(value); };
             if (timed) add(profile.times[row]);
             add(along.distance ? profile.distance[i] : along.values[i]);
             for (int axis = 0; axis < 3; ++axis) add(profile.positions[i][axis] * perUnit[axis]);
             for (; column < first + profile.values.size();) add(profile.values[column - first][row * places + i]);
         }
+    if (several) table.columns.insert(table.columns.begin() + 1, {.name = "state", .texts = std::move(states)});
     return table;
 }
 
@@ -208,6 +215,7 @@ std::vector<Plot> profilePlots(const volume::DatasetInfo& info, const Session& s
     const PlotAxis distance{.title = along.title, .range = {least, most}, .unit = along.unit};
     const PlotAxis time{
         .title = timeWord(info), .range = {info.times.front(), info.times.back()}, .unit = info.timeUnit};
+    const std::vector<std::string> names = stateNames(info, profile.times);
     std::vector<Plot> plots;
     for (std::size_t c = 0; c < profile.values.size(); ++c) {
         const volume::Channel own = info.channel(profile.query.channels[c]);
@@ -219,10 +227,19 @@ std::vector<Plot> profilePlots(const volume::DatasetInfo& info, const Session& s
             continue;
         }
         plot.y = {.title = own.name, .range = paddedRange(info.channelRange(own), 0.05), .unit = own.unit};
-        PlotSeries& line = plot.series.emplace_back(PlotSeries{own.name, {}, plotInk(0, dark)});
-        for (std::size_t i = 0; i < profile.values[c].size(); ++i)
-            line.points.push_back(
-                {over == ProfileOver::Time ? profile.times[i] : along.values[i], profile.values[c][i]});
+        if (over == ProfileOver::Time) {
+            PlotSeries& line = plot.series.emplace_back(PlotSeries{own.name, {}, plotInk(0, dark)});
+            for (std::size_t i = 0; i < profile.times.size(); ++i)
+                line.points.push_back({profile.times[i], profile.values[c][i]});
+            continue;
+        }
+        const std::size_t count = profile.times.size(), places = along.values.size();
+        for (std::size_t row = 0; row < count; ++row) {
+            PlotSeries& line = plot.series.emplace_back(PlotSeries{
+                count > 1 ? names[row] : own.name, {}, count > 1 ? stateInk(row, count, dark) : plotInk(0, dark)});
+            for (std::size_t i = 0; i < places; ++i)
+                line.points.push_back({along.values[i], profile.values[c][row * places + i]});
+        }
     }
     return plots;
 }
@@ -250,11 +267,12 @@ void markPlots(std::vector<Plot>& plots, const volume::DatasetInfo& info, const 
             plot.cursorX = lineAxis(session, info, profile).values[*place];
             continue;
         }
-        PlotSeries& line = plot.series.front();
-        const glm::dvec2 at = line.points[*place];
-        plot.cursorX = at.x;
-        plot.cursorY = at.y;
-        line.value = formatNumber(at.y, (plot.y.range.hi - plot.y.range.lo) / 1100);
+        for (PlotSeries& line : plot.series) {
+            const glm::dvec2 at = line.points[*place];
+            plot.cursorX = at.x;
+            if (plot.series.size() == 1) plot.cursorY = at.y;
+            line.value = formatNumber(at.y, (plot.y.range.hi - plot.y.range.lo) / 1100);
+        }
     }
 }
 

@@ -17,10 +17,10 @@ namespace tessera::app {
 /// What is asked for; equal queries have equal answers.
 struct ProfileQuery {
     ProfileOver over = ProfileOver::Line;
-    std::vector<int> channels;       ///< indices of DatasetInfo::channels()
-    std::vector<glm::dvec3> corners; ///< of the line; over time: the one place
-    int samples = 0;                 ///< places along the line
-    volume::TimePair time;           ///< along the line alone
+    std::vector<int> channels;               ///< indices of DatasetInfo::channels()
+    std::vector<glm::dvec3> corners;         ///< of the line; over time: the one place
+    int samples = 0;                         ///< places along the line
+    std::vector<volume::TimePair> times{{}}; ///< along the line alone, a curve each
     bool operator==(const ProfileQuery&) const = default;
 };
 
@@ -28,7 +28,7 @@ struct Profile {
     ProfileQuery query;
     std::vector<double> distance; ///< of the places along the line, in the data's length unit
     std::vector<glm::dvec3> positions;
-    std::vector<double> times; ///< stored times, where it runs over time
+    std::vector<double> times; ///< the stored times where it runs over time, else those of the query
     /// By channel, then by time, then by place (fastest); NaN where absent.
     std::vector<std::vector<double>> values;
 
@@ -48,9 +48,9 @@ struct LineAxis {
 };
 LineAxis lineAxis(const Session& session, const volume::DatasetInfo& info, const Profile& profile);
 
-/// A row for each place, or time, or time and place.
+/// A row for each place, or time, or time and place; several times along the line are named.
 Table profileTable(const volume::DatasetInfo& info, const Session& session, const Profile& profile);
-/// A plot for each channel: curves, or over distance and time a plot without its picture.
+/// A plot for each channel: curves, one for each time of a line, or over distance and time a plot without its picture.
 std::vector<Plot> profilePlots(const volume::DatasetInfo& info, const Session& session, const Profile& profile,
                                bool dark);
 /// The element of Profile::across() at the session's time, or nearest to its cursor where that lies near the line.

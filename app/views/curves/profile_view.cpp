@@ -1,3 +1,4 @@
+#include "app/pane/choose_times.h"
 #include "app/pane/view_parts.h"
 #include "app/plots/plot_view.h"
 #include "app/queries/async_query.h"
@@ -35,6 +36,7 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
     ToolRow tools(context);
     chooseChannels(tools, info, view.channels, shown);
     chooseOver(tools, view.over, info.times.size() > 1);
+    if (view.over == ProfileOver::Line) chooseTimes(tools, info, view.times, session);
     if (view.over != ProfileOver::Time) {
         if (tools.next(buttonWidth("Corner at cross-hair"))) {
             if (ImGui::Button("Corner at cross-hair")) view.points.push_back(session.cursor);
@@ -72,7 +74,7 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
                                  const Progress&) { return profileDrawing(info, session, *profile, form); },
              .table = [info, profile, session](const Progress&) { return profileTable(info, session, *profile); }});
     }
-    drawOrigin(context, tools, shown, view.over == ProfileOver::Line);
+    drawOrigin(context, tools, shown, view.over == ProfileOver::Line && view.times.empty());
     if (view.points.size() == 1 && view.over != ProfileOver::Time) drawNote(tools, "one more corner needed");
 }
 
@@ -120,8 +122,8 @@ ProfileQuery profileQuery(const ProfileView& view, const Session& session, const
                        .channels = channels,
                        .corners = profileCorners(view, session, info.bounds),
                        .samples = std::clamp(view.samples, 2, 4096),
-                       .time = {}};
-    if (query.over == ProfileOver::Line) query.time = volume::timesAround(info.times, session.time);
+                       .times = {}};
+    if (query.over == ProfileOver::Line) query.times = chosenTimes(info, view.times, session.time);
     if (query.over == ProfileOver::Time) query.corners = {session.cursor}, query.samples = 1;
     return query;
 }

@@ -3,7 +3,6 @@
 #include "app/pane/plot.h"
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
-#include "app/values/selection_text.h"
 #include "volume/base/error.h"
 #include "volume/bricks/source_at_time.h"
 #include "volume/flow/flow_channels.h"
@@ -15,10 +14,6 @@
 namespace tessera::app {
 
 namespace {
-
-constexpr SectionMeasure kMeasures[] = {SectionMeasure::Mean,     SectionMeasure::Least, SectionMeasure::Most,
-                                        SectionMeasure::Integral, SectionMeasure::Flux,  SectionMeasure::Flow,
-                                        SectionMeasure::Area};
 
 /// The degree of interest of a selection as a function of the channels it names.
 void setInterest(volume::SectionQuery& query, const SectionCurvesQuery& asked, const volume::DatasetInfo& info) {
@@ -37,10 +32,6 @@ void setInterest(volume::SectionQuery& query, const SectionCurvesQuery& asked, c
             given.push_back(place < 0 ? std::nan("") : static_cast<double>(values[static_cast<std::size_t>(place)]));
         return doi(given, position);
     };
-}
-
-volume::Channel channelOf(const volume::DatasetInfo& info, int channel) {
-    return info.channel(channel);
 }
 
 std::string velocityUnit(const volume::DatasetInfo& info, const std::string& velocity) {
@@ -89,7 +80,7 @@ SectionCurves readSections(const std::shared_ptr<const volume::BrickSource>& sou
 
 volume::ComposedUnit measureUnit(const volume::DatasetInfo& info, int channel, const std::string& velocity,
                                  SectionMeasure measure) {
-    const std::string own = channelOf(info, channel).unit, speed = velocityUnit(info, velocity);
+    const std::string own = info.channel(channel).unit, speed = velocityUnit(info, velocity);
     const volume::UnitPower area{info.lengthFactor(), 2};
     std::vector<volume::UnitPower> factors;
     switch (measure) {
@@ -172,99 +163,6 @@ std::string placeTitle(const SectionCurvesQuery& asked) {
                                   : std::string(volume::kSpaceAxisNames[static_cast<std::size_t>(asked.axis)]);
 }
 
-Table sectionTable(const volume::DatasetInfo& info, const SectionCurves& curves) {
-    const auto& [asked, sections, velocity, errors] = curves;
-    const std::vector<CurveLook> looks = curveLooks(info, asked);
-    struct Row {
-        std::size_t region, channel, plane;
-    };
-    std::vector<Row> rows;
-    for (std::size_t r = 0; r < looks.size(); ++r)
-        for (std::size_t c = 0; c < asked.channels.size(); ++c)
-            if (std::ranges::any_of(sections.values[r][c], [](const auto& plane) { return plane.area > 0; }))
-                for (std::size_t p = 0; p < sections.place.size(); ++p) rows.push_back({r, c, p});
-    const auto channelAt = [&](const Row& row) { return channelOf(info, asked.channels[row.channel]); };
-    const auto unitAt = [&](const Row& row, SectionMeasure measure) {
-        return measureUnit(info, asked.channels[row.channel], velocity, measure);
-    };
-    const auto valuesAt = [&](const Row& row) { return sections.values[row.region][row.channel][row.plane]; };
-    Table table;
-    const double weight = asked.time.weight;
-    const double time = info.times[static_cast<std::size_t>(asked.time.earlier)] * (1 - weight) +
-                        info.times[static_cast<std::size_t>(asked.time.later)] * weight;
-    if (info.times.size() > 1)
-        addColumn(table, rows, {.name = info.timeName, .unit = info.timeUnit}, [&](const Row&) { return time; });
-    addColumn(table, rows, {.name = placeTitle(asked), .unit = info.lengthUnit},
-              [&](const Row& row) { return sections.place[row.plane]; });
-    addColumn(table, rows, {.name = "region"}, [&](const Row& row) { return looks[row.region].name; });
-    addColumn(table, rows, {.name = "parameter"}, [&](const Row& row) { return channelAt(row).name; });
-    addColumn(table, rows, {.name = "unit"}, [&](const Row& row) { return channelAt(row).unit; });
-    addColumn(table, rows, {.name = "weight"}, [&](const Row&) {
-        return std::string(volume::kSectionWeightNames[static_cast<std::size_t>(asked.weight)]);
-    });
-    addColumn(table, rows, {.name = "samples"}, [&](const Row& row) { return valuesAt(row).samples; });
-    sayWeighted(table.columns.back());
-    for (const SectionMeasure measure : kMeasures) {
-        const std::string name(measure == SectionMeasure::Least  ? "min"
-                               : measure == SectionMeasure::Most ? "max"
-                                                                 : kSectionMeasureNames[std::size_t(measure)]);
-        const bool carried = measure == SectionMeasure::Flux || measure == SectionMeasure::Flow;
-        addColumn(table, rows, {.name = name}, [&](const Row& row) {
-            if (carried && velocity.empty()) return std::nan("");
-            return measured(valuesAt(row), measure, unitAt(row, measure).factor);
-        });
-        if (measure > SectionMeasure::Most)
-            addColumn(table, rows, {.name = name + " unit"}, [&](const Row& row) { return unitAt(row, measure).unit; });
-    }
-    for (const SectionMeasure measure : kMeasures)
-        if (!errors.empty() && measure != SectionMeasure::Area)
-            addColumn(table, rows, {.name = "error of " + std::string(kSectionMeasureNames[std::size_t(measure)])},
-                      [&](const Row& row) {
-                          return errorOf(curves, row.channel, valuesAt(row), measure, unitAt(row, measure).factor);
-                      });
-    return table;
-}
-
-std::vector<Plot> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves, SectionMeasure measure) {
-    const auto& [asked, sections, velocity, errors] = curves;
-    if (velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
-        throw Error("a flux needs a velocity, and no vector has the name or unit of one");
-    const LengthUnit length = suitableLength(
-        info.lengthUnit, sections.place.empty() ? 0 : std::abs(sections.place.back() - sections.place.front()));
-    const std::vector<CurveLook> looks = curveLooks(info, asked);
-    std::vector<Plot> panels;
-    for (std::size_t c = 0; c < asked.channels.size(); ++c) {
-        const volume::Channel channel = channelOf(info, asked.channels[c]);
-        const volume::ComposedUnit unit = measureUnit(info, asked.channels[c], velocity, measure);
-        Plot panel;
-        Range range{HUGE_VAL, -HUGE_VAL};
-        for (std::size_t r = 0; r < looks.size(); ++r) {
-            PlotSeries series{looks[r].name, {}, looks[r].color};
-            bool any = false;
-            for (std::size_t p = 0; p < sections.place.size(); ++p) {
-                const volume::SectionValues& values = sections.values[r][c][p];
-                const double value = values.area > 0 ? measured(values, measure, unit.factor) : std::nan("");
-                series.points.push_back({sections.place[p] * length.perUnit, value});
-                if (!std::isfinite(value)) continue;
-                range = {std::min(range.lo, value), std::max(range.hi, value)};
-                any = true;
-            }
-            if (any) panel.series.push_back(std::move(series));
-        }
-        const std::string what = std::string(kSectionMeasureNames[static_cast<std::size_t>(measure)]);
-        const bool everywhere = measure != SectionMeasure::Flow && measure != SectionMeasure::Area;
-        panel.x = {.title = placeTitle(asked), .range = {}, .unit = length.name};
-        if (!sections.place.empty())
-            panel.x.range = {sections.place.front() * length.perUnit, sections.place.back() * length.perUnit};
-        panel.y = {.title = what + (everywhere ? " of " + channel.name : " where " + channel.name + " exists"),
-                   .range = range.lo <= range.hi ? paddedRange(range, 0.05) : Range{0, 1},
-                   .unit = unit.unit};
-        if (panel.series.size() == 1 && panel.series[0].name != "all") panel.title = panel.series[0].name;
-        panels.push_back(std::move(panel));
-    }
-    return panels;
-}
-
 std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const SectionCurves& curves) {
     const SectionCurvesQuery& asked = curves.query;
     std::vector<std::string> notes;
@@ -274,7 +172,7 @@ std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const Sec
     if (asked.weight == volume::SectionWeight::MassFlow) {
         const auto density = volume::densityChannel(info);
         notes.push_back("mean by mass flow: weighted by |" +
-                        (density ? channelOf(info, *density).name + " " : std::string()) + curves.velocity +
+                        (density ? info.channel(*density).name + " " : std::string()) + curves.velocity +
                         "| through the plane" + (density ? "" : " (no density: by volume flow)"));
     }
     if (!curves.velocity.empty()) {

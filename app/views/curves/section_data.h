@@ -73,10 +73,16 @@ std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const Section
 /// The title of the places along the axis or line, without unit.
 std::string placeTitle(const SectionCurvesQuery& query);
 
-/// A row for each region, parameter (where the region has it) and plane, with every measure.
-Table sectionTable(const volume::DatasetInfo& info, const SectionCurves& curves);
-/// A plot for each parameter, a line for each region.
-std::vector<Plot> sectionPanels(const volume::DatasetInfo& info, const SectionCurves& curves, SectionMeasure measure);
+/// Names of states that are drawn together, by what differs between them: their times, the selection and everything.
+std::vector<std::string> sectionStateNames(const volume::DatasetInfo& info, const std::vector<SectionCurves>& states);
+
+/// A row for each state, region, parameter (where the region has it) and plane, with every measure. `states`: the same
+/// question of several times or selections; with more than one they are named.
+Table sectionTable(const volume::DatasetInfo& info, const std::vector<SectionCurves>& states);
+/// A plot for each parameter, a line for each region; of several states a plot for each parameter and region, a line
+/// for each state. Throws Error for a flux without a velocity.
+std::vector<Plot> sectionPanels(const volume::DatasetInfo& info, const std::vector<SectionCurves>& states,
+                                SectionMeasure measure, bool dark = false);
 
 /// Notes on how the numbers were computed, one sentence each.
 std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const SectionCurves& curves);

@@ -1,6 +1,7 @@
 #include "app/views/curves/section_view.h"
 
 #include "app/pages/plot_page.h"
+#include "app/pane/choose_times.h"
 #include "app/pane/view_parts.h"
 #include "app/plots/plot_view.h"
 #include "app/queries/async_query.h"
@@ -22,8 +23,11 @@ namespace {
 constexpr std::size_t kMostSections = 6; ///< where the user has not chosen
 constexpr int kLinePlanes = 200;         ///< across a line
 
+using SectionQueries = std::vector<SectionCurvesQuery>; ///< of the states drawn together
+using SectionStates = std::vector<SectionCurves>;
+
 struct SectionCache : ViewCache {
-    AsyncQuery<SectionCurvesQuery, SectionCurves> answers;
+    AsyncQuery<SectionQueries, SectionStates> answers;
 };
 
 /// A list of names for an enumeration; true where another one was chosen.
@@ -74,7 +78,7 @@ void chooseRegions(ToolRow& tools, const volume::DatasetInfo& info, int label, S
     if (ImGui::IsItemHovered()) tooltip("Regions that have a curve");
 }
 
-SectionCurvesQuery queryOf(const ViewContext& context, const ProfileView& view, const std::vector<int>& channels) {
+SectionQueries queriesOf(const ViewContext& context, const ProfileView& view, const std::vector<int>& channels) {
     const volume::DatasetInfo& info = context.numbers->info();
     const SectionSettings& settings = view.sections;
     SectionCurvesQuery query;
@@ -92,24 +96,43 @@ SectionCurvesQuery queryOf(const ViewContext& context, const ProfileView& view, 
         if (query.label >= 0) query.regions = settings.regions;
     }
     const BrushedQuery brushed = brushedQuery(context.session, info, {}, {}, 1, false);
-    query.time = brushed.time;
-    query.selection = brushed.selection;
-    query.selection.name = selectionName(context.session);
-    query.lenses = brushed.lenses;
-    return query;
+    SectionQueries states;
+    for (const volume::TimePair& time : chosenTimes(info, view.times, context.session.time)) {
+        query.time = time;
+        query.selection = brushed.selection;
+        query.selection.name = selectionName(context.session);
+        query.lenses = brushed.lenses;
+        states.push_back(query);
+        if (!settings.everything || !query.selection.active()) continue;
+        query.selection = {};
+        query.lenses = {};
+        states.push_back(query);
+    }
+    return states;
+}
+
+SectionStates readStates(const std::shared_ptr<const volume::BrickSource>& source, const SectionQueries& asked,
+                         const NumberOrigin& origin, const Progress& progress) {
+    SectionStates out;
+    for (const SectionCurvesQuery& each : asked) {
+        const auto count = static_cast<double>(asked.size()), done = static_cast<double>(out.size());
+        out.push_back(readSections(source, each, progress.part(done / count, (done + 1) / count), origin));
+    }
+    return out;
 }
 
 /// What one unit of the data is in the unit of the axis of the plots.
-double axisPerUnit(const SectionCurves& curves, const std::vector<Plot>& plots) {
-    const auto& places = curves.sections.place;
+double axisPerUnit(const SectionStates& states, const std::vector<Plot>& plots) {
+    const auto& places = states.front().sections.place;
     const Range across = plots.front().x.range;
     return places.back() != places.front() ? (across.hi - across.lo) / (places.back() - places.front()) : 1;
 }
 
 /// Where the cursor lies on the axis of the plots; nothing for planes across a line.
-std::optional<double> placeOfCursor(const SectionCurves& curves, const std::vector<Plot>& plots, glm::dvec3 cursor) {
-    if (!curves.query.line.empty() || curves.sections.place.empty() || plots.empty()) return std::nullopt;
-    return cursor[static_cast<int>(curves.query.axis)] * axisPerUnit(curves, plots);
+std::optional<double> placeOfCursor(const SectionStates& states, const std::vector<Plot>& plots, glm::dvec3 cursor) {
+    const SectionCurves& first = states.front();
+    if (!first.query.line.empty() || first.sections.place.empty() || plots.empty()) return std::nullopt;
+    return cursor[static_cast<int>(first.query.axis)] * axisPerUnit(states, plots);
 }
 
 /// Marks a place of the axis, with the value of each line at the plane nearest to it.
@@ -126,7 +149,7 @@ void markSections(std::vector<Plot>& plots, std::optional<double> place) {
 }
 
 void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>& shown,
-                 const std::shared_ptr<const SectionCurves>& curves) {
+                 const std::shared_ptr<const SectionStates>& states) {
     static constexpr const char* kAcross[] = {"across x", "across y", "across z", "across the line"};
     static constexpr const char* kAcrossHelp[] = {
         "Planes perpendicular to the x axis, through the samples",
@@ -145,24 +168,29 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
     ToolRow tools(context);
     chooseChannels(tools, info, view.channels, shown);
     chooseOver(tools, view.over, info.times.size() > 1);
+    chooseTimes(tools, info, view.times, context.session);
     choose(tools, "##across", view.sections.across, kAcross, kAcrossHelp, 7);
     choose(tools, "##measure", view.sections.measure, kMeasureNames, kSectionMeasureDocs, 6.5f);
     if (view.sections.measure == SectionMeasure::Mean)
         choose(tools, "##weight", view.sections.weight, kWeights, kWeightHelp, 7);
     if (const auto label = volume::labelChannel(info)) chooseRegions(tools, info, *label, view.sections);
-    if (!curves) return;
+    if (context.session.selection.active() && tools.next(checkboxWidth("and everything"))) {
+        ImGui::Checkbox("and everything", &view.sections.everything);
+        if (ImGui::IsItemHovered()) tooltip("Beside each curve of the selection one of everything");
+    }
+    if (!states) return;
     exportMenu(context, tools,
                {.name = "sections",
                 .figure =
-                    [info, curves, measure = view.sections.measure,
+                    [info, states, measure = view.sections.measure,
                      cursor = context.session.cursor](const PageForm& form, const Progress&) {
-                        std::vector<Plot> plots = sectionPanels(info, *curves, measure);
-                        markSections(plots, placeOfCursor(*curves, plots, cursor));
+                        std::vector<Plot> plots = sectionPanels(info, *states, measure, form.dark);
+                        markSections(plots, placeOfCursor(*states, plots, cursor));
                         return plotPage(plots, 0, form);
                     },
-                .table = [info, curves](const Progress&) { return sectionTable(info, *curves); },
-                .brushed = curves->query.selection.active()});
-    drawOrigin(context, tools, shown);
+                .table = [info, states](const Progress&) { return sectionTable(info, *states); },
+                .brushed = states->front().query.selection.active()});
+    drawOrigin(context, tools, shown, view.times.empty());
 }
 
 } // namespace
@@ -195,36 +223,37 @@ void drawSections(ViewContext& context, const std::string& pane, ProfileView& vi
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostSections);
     if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
     SectionCache& cache = cacheOf<SectionCache>(context, pane);
-    const SectionCurvesQuery query = queryOf(context, view, shown);
-    const auto curves = cache.answers.get(
-        context, context.numbers, {.key = "sections " + pane, .title = "Averages over planes", .quiet = true}, query,
-        [origin = context.origin](const auto& source, const SectionCurvesQuery& asked, int, const Progress& progress) {
-            return readSections(source, asked, progress, origin);
+    const SectionQueries queries = queriesOf(context, view, shown);
+    const auto states = cache.answers.get(
+        context, context.numbers, {.key = "sections " + pane, .title = "Averages over planes", .quiet = true}, queries,
+        [origin = context.origin](const auto& source, const SectionQueries& asked, int, const Progress& progress) {
+            return readStates(source, asked, origin, progress);
         },
-        [](const SectionCurvesQuery& a, const SectionCurvesQuery& b) {
-            return a.channels == b.channels && a.axis == b.axis && a.line == b.line;
+        [](const SectionQueries& a, const SectionQueries& b) {
+            return a.front().channels == b.front().channels && a.front().axis == b.front().axis &&
+                   a.front().line == b.front().line;
         });
-    drawToolbar(context, view, shown, curves);
-    if (!curves) {
+    drawToolbar(context, view, shown, states);
+    if (!states) {
         if (const std::string failure = cache.answers.failure(); !failure.empty())
             return drawHint("No averages", failure.c_str());
         return ImGui::TextDisabled("Averaging...");
     }
     const SectionMeasure measure = view.sections.measure;
-    if (curves->velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
+    if (states->front().velocity.empty() && (measure == SectionMeasure::Flux || measure == SectionMeasure::Flow))
         return drawHint("No flux", "The data have no vector with the name or unit of a velocity.");
-    std::vector<Plot> plots = sectionPanels(info, *curves, measure);
-    const std::optional<PlotColumn> column = placePlots(plots);
+    std::vector<Plot> plots = sectionPanels(info, *states, measure, darkTheme());
+    const std::optional<PlotColumn> column = placePlots(plots, 0, states->size() > 1);
     if (!column) return;
     // What is under the mouse is read; a click or drag takes the cursor to that plane.
     const Range across = plots.front().x.range;
-    std::optional<double> marked = placeOfCursor(*curves, plots, session.cursor);
-    const bool line = !curves->query.line.empty();
+    std::optional<double> marked = placeOfCursor(*states, plots, session.cursor);
+    const bool line = !states->front().query.line.empty();
     if (column->hovered) marked = across.lo + (across.hi - across.lo) * column->share;
     if (column->taken && !line) {
-        const int axis = static_cast<int>(curves->query.axis);
+        const int axis = static_cast<int>(states->front().query.axis);
         session.cursor[axis] =
-            std::clamp(*marked / axisPerUnit(*curves, plots), info.bounds.lo[axis], info.bounds.hi[axis]);
+            std::clamp(*marked / axisPerUnit(*states, plots), info.bounds.lo[axis], info.bounds.hi[axis]);
         context.interacting = true;
     }
     if (context.decoration.cursor) markSections(plots, marked);

@@ -92,6 +92,22 @@ void drawSummary(const ViewContext& context) {
     ImGui::EndTable();
 }
 
+/// The unit of lengths of data that state none, to be chosen.
+void chooseLengthUnit(Session& session, const volume::DatasetInfo& info) {
+    std::string& stated = session.data.import.lengthUnit;
+    if (!info.lengthUnit.empty() && stated.empty()) return;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("Unit of lengths");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(em() * 6);
+    if (ImGui::BeginCombo("##length unit", stated.empty() ? "not stated" : stated.c_str())) {
+        for (const char* unit : {"", "m", "cm", "mm", "um", "nm"})
+            if (ImGui::Selectable(*unit == 0 ? "not stated" : unit, stated == unit)) stated = unit;
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip("The file states none: positions, lengths and volumes are in this unit");
+}
+
 /// Names and colours of a label's values, to be typed and chosen.
 void editLabels(Session& session, const volume::Parameter& parameter) {
     constexpr int kColors = 8;
@@ -267,7 +283,10 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
     std::shared_ptr<const StatisticsResult> result;
     if (!query.channels.empty()) result = cache.answers.get(context, "summary " + pane, query);
     ImGui::BeginChild("data");
-    if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) drawSummary(context);
+    if (ImGui::CollapsingHeader("Data set", ImGuiTreeNodeFlags_DefaultOpen)) {
+        drawSummary(context);
+        chooseLengthUnit(context.session, info);
+    }
     // Above the derived parameters, whose height changes while a formula is edited.
     if (ImGui::CollapsingHeader("Derived parameters", ImGuiTreeNodeFlags_DefaultOpen))
         drawDerivedList(context, cache.derived);

@@ -1,7 +1,9 @@
 #include "app/views/data/derived_list.h"
 
+#include "app/edits/show_parameter.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/parameter_widget.h"
+#include "app/ui/time_text.h"
 #include "volume/base/unit_product.h"
 #include "volume/derived/expression.h"
 #include "volume/derived/formula_unit.h"
@@ -150,6 +152,15 @@ volume::DerivedParameter newDifference(const volume::DatasetInfo& info, const st
     return {differenceName(info, recipe), unitOf(info, channel), recipe};
 }
 
+std::string showDifference(Session& session, const volume::DatasetInfo& info, const std::string& channel,
+                           const volume::TimeReference& from) {
+    const std::string name = addDerived(session, newDifference(info, channel, from));
+    showParameter(session, name);
+    const bool moved = leaveReference(session, info, from);
+    return "New parameter: " + name +
+           (moved ? ", shown at " + timeText(info, session.time) + ": there is no difference at the time before" : "");
+}
+
 std::string addDerived(Session& session, const volume::DerivedParameter& wanted) {
     std::vector<volume::DerivedParameter>& derived = session.data.derived;
     for (const volume::DerivedParameter& own : derived)
@@ -166,17 +177,13 @@ bool hasOther(const volume::DatasetInfo& info, const std::string& channel) {
     return found && volume::otherChannel(info, *found).has_value();
 }
 
-/// Times that a parameter can be compared with, one click each.
-void drawDifferences(ViewContext& context, DerivedDraft& draft, const std::string& channel) {
-    if (ImGui::SmallButton("Minus another time...")) ImGui::OpenPopup("minus another time");
-    if (ImGui::IsItemHovered())
-        tooltip("Add the difference between a parameter and its values at another time, as a new parameter");
-    if (!ImGui::BeginPopup("minus another time")) return;
+/// The times that a parameter can be compared with.
+void differenceItems(ViewContext& context, DerivedDraft& draft, const std::string& channel) {
     const volume::DatasetInfo& info = context.source->info();
-    const auto item = [&](const char* label, const volume::TimeReference& from) {
+    const auto item = [&](const std::string& label, const volume::TimeReference& from) {
         if (!ImGui::MenuItem((channel + " minus " + label).c_str())) return;
-        draft.parameters.push_back(newDifference(info, channel, from));
-        draft.edited = true;
+        showDifference(context.session, info, channel, from);
+        draft.parameters = context.session.data.derived;
     };
     if (info.times.size() > 1) {
         item("first", {volume::OtherTime::First});
@@ -184,9 +191,31 @@ void drawDifferences(ViewContext& context, DerivedDraft& draft, const std::strin
         item("last", {volume::OtherTime::Last});
         item("next", {volume::OtherTime::Next});
         const volume::TimeReference now{volume::OtherTime::Time, context.session.time};
-        item((volume::timeText(now, info) + " (the time shown)").c_str(), now);
+        item(volume::timeText(now, info) + " (the time shown)", now);
+        if (ImGui::BeginMenu((channel + " minus a time").c_str())) {
+            for (const double time : info.times)
+                item(volume::timeText({volume::OtherTime::Time, time}, info), {volume::OtherTime::Time, time});
+            ImGui::EndMenu();
+        }
     }
     if (hasOther(info, channel)) item("other data", {volume::OtherTime::Other});
+}
+
+/// The parameter shown minus other times, and a menu for each other one.
+void drawDifferences(ViewContext& context, DerivedDraft& draft, const std::string& channel) {
+    if (ImGui::SmallButton("Minus another time...")) ImGui::OpenPopup("minus another time");
+    if (ImGui::IsItemHovered())
+        tooltip("Show the difference between a parameter and its values at another time, as a new parameter");
+    if (!ImGui::BeginPopup("minus another time")) return;
+    const volume::DatasetInfo& info = context.source->info();
+    differenceItems(context, draft, channel);
+    ImGui::Separator();
+    for (const volume::Channel& other : info.channels()) {
+        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(other.parameter)];
+        if (other.name == channel || parameter.categorical || !ImGui::BeginMenu(other.name.c_str())) continue;
+        differenceItems(context, draft, other.name);
+        ImGui::EndMenu();
+    }
     ImGui::EndPopup();
 }
 

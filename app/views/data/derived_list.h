@@ -30,6 +30,11 @@ void followRecipe(volume::DerivedParameter& own, const volume::DerivedParameter&
 volume::DerivedParameter newDifference(const volume::DatasetInfo& info, const std::string& channel,
                                        const volume::TimeReference& from);
 
+/// Adds that parameter and shows it: in the volume, the slice and the views of slices, at a time at which it is not 0
+/// throughout. Returns what to tell the user.
+std::string showDifference(Session& session, const volume::DatasetInfo& info, const std::string& channel,
+                           const volume::TimeReference& from);
+
 /// Adds a parameter to the session's derived ones and gives it colours; one computed alike is not added again. Returns
 /// its name.
 std::string addDerived(Session& session, const volume::DerivedParameter& wanted);

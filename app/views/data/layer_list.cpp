@@ -57,14 +57,6 @@ void addLayer(Session& session, const volume::BrickSource& source, std::size_t k
     addLayer(session, std::move(layer));
 }
 
-void followChannel(std::string& name, const std::string& before, const std::string& now) {
-    if (before.empty() || before == now) return;
-    if (name == before || name.starts_with(before + " "))
-        name = now + name.substr(before.size());
-    else if (name.ends_with(" of " + before))
-        name = name.substr(0, name.size() - before.size()) + now;
-}
-
 void drawLayerList(ViewContext& context, const volume::DatasetInfo& info, int& selected) {
     std::vector<vis::Layer>& layers = context.session.layers;
     int moveFrom = -1, moveTo = 0;
@@ -103,7 +95,7 @@ void drawLayerList(ViewContext& context, const volume::DatasetInfo& info, int& s
         ImGui::AlignTextToFramePadding();
         // A layer named after its parameter need not say it twice.
         std::string channel = vis::shownChannel(layer.technique);
-        const std::string whole = layerTitle(layer, info);
+        const std::string whole = layerTitle(layer, info) + otherTimeText(layer, info, context.session.time);
         if (whole == channel || whole.starts_with(channel + " ") || layer.name.empty()) channel.clear();
         const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(channel.c_str()).x - em() * 1.5f;
         const std::string name = fitText(whole, room);

@@ -20,7 +20,4 @@ void drawLayerButtons(ViewContext& context, const volume::DatasetInfo& info, int
 /// every list of layers.
 void addLayer(Session& session, const volume::BrickSource& source, std::size_t kind);
 
-/// A layer's name that is made of its parameter ("O2", "O2 slice", "Volume of O2") follows when another is chosen.
-void followChannel(std::string& name, const std::string& before, const std::string& now);
-
 } // namespace tessera::app

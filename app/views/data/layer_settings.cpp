@@ -1,5 +1,6 @@
 #include "app/data/first_view.h"
 #include "app/edits/region_surface.h"
+#include "app/edits/show_parameter.h"
 #include "app/pane/view_parts.h"
 #include "app/session/own_functions.h"
 #include "app/tools/lens_list.h"

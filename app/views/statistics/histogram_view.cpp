@@ -1,13 +1,16 @@
 #include "app/pages/plot_page.h"
+#include "app/pane/choose_times.h"
 #include "app/pane/view_parts.h"
 #include "app/plots/plot_view.h"
 #include "app/queries/readout.h"
 #include "app/queries/statistics_query.h"
 #include "app/tools/brush_edit.h"
 #include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
 #include "app/values/selection_text.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tessera::app {
@@ -19,7 +22,7 @@ struct HistogramCache : ViewCache {
     BrushDrag drag;
 };
 
-/// `selected`: the name of what is selected; "": nothing is.
+/// `selected`: the name of what is selected; "": nothing is. Its samples are the last column, and may be weighted.
 Table histogramTable(const volume::Channel& channel, const volume::Histogram& histogram, const std::string& selected) {
     Table table{.columns = {{.name = "parameter"},
                             {.name = "from", .unit = channel.unit},
@@ -37,7 +40,6 @@ Table histogramTable(const volume::Channel& channel, const volume::Histogram& hi
         table.columns[3].numbers.push_back(static_cast<double>(histogram.count[i]));
         if (brushed) table.columns[4].numbers.push_back(histogram.focus[i]);
     }
-    if (brushed) sayWeighted(table.columns[4]);
     return table;
 }
 
@@ -70,6 +72,69 @@ Plot histogramPlot(const volume::Channel& channel, Range range, const volume::Hi
     }
     plot.y = {.title = look.logCounts ? "log10(1 + samples)" : "samples", .range = {0, height(most) * 1.04}};
     return plot;
+}
+
+/// Histograms of one parameter at several times.
+struct HistogramFamily {
+    std::vector<std::shared_ptr<const StatisticsResult>> results;
+    std::vector<double> times;
+    std::vector<std::string> names; ///< of the times
+    std::string selected;           ///< the name of what is selected; "": nothing is
+
+    const volume::Histogram& of(std::size_t i) const { return results[i]->statistics.channels.front().histogram; }
+    /// Samples in a bin: those of the selection, where there is one.
+    double count(std::size_t i, std::size_t bin) const {
+        return results[i]->brushed ? of(i).focus[bin] : static_cast<double>(of(i).count[bin]);
+    }
+    std::string name(std::size_t i) const { return names[i] + (results[i]->brushed ? ", " + selected : ""); }
+};
+
+/// A line of steps for each time.
+Plot familyPlot(const volume::Channel& channel, const HistogramFamily& family, bool logCounts, bool dark) {
+    const Range range = family.of(0).range;
+    Plot plot;
+    plot.x = {.title = channel.name, .range = range, .unit = channel.unit};
+    const auto height = [&](double count) { return logCounts ? std::log10(1 + std::max(0.0, count)) : count; };
+    double most = 1;
+    for (std::size_t s = 0; s < family.results.size(); ++s) {
+        PlotSeries& line =
+            plot.series.emplace_back(PlotSeries{family.name(s), {}, stateInk(s, family.results.size(), dark)});
+        const std::size_t bins = family.of(s).count.size();
+        const double width = (range.hi - range.lo) / static_cast<double>(bins);
+        for (std::size_t i = 0; i < bins; ++i) {
+            const double from = range.lo + width * static_cast<double>(i), count = family.count(s, i);
+            most = std::max(most, count);
+            line.points.push_back({from, height(count)});
+            line.points.push_back({from + width, height(count)});
+        }
+    }
+    plot.y = {.title = logCounts ? "log10(1 + samples)" : "samples", .range = {0, height(most) * 1.04}};
+    return plot;
+}
+
+/// A row for each time and bin.
+Table familyTable(const volume::DatasetInfo& info, const volume::Channel& channel, const HistogramFamily& family) {
+    Table table;
+    for (std::size_t s = 0; s < family.results.size(); ++s) {
+        Table own = histogramTable(channel, family.of(s), family.selected);
+        const std::size_t rows = rowsOf(own);
+        own.columns.insert(own.columns.begin(),
+                           {.name = "state", .texts = std::vector<std::string>(rows, family.names[s])});
+        own.columns.insert(
+            own.columns.begin(),
+            {.name = info.timeName, .unit = info.timeUnit, .numbers = std::vector<double>(rows, family.times[s])});
+        if (table.columns.empty()) {
+            table = std::move(own);
+            continue;
+        }
+        for (std::size_t c = 0; c < table.columns.size(); ++c) {
+            TableColumn &to = table.columns[c], &from = own.columns[c];
+            to.texts.insert(to.texts.end(), from.texts.begin(), from.texts.end());
+            to.numbers.insert(to.numbers.end(), from.numbers.begin(), from.numbers.end());
+        }
+    }
+    if (!family.selected.empty()) sayWeighted(table.columns.back());
+    return table;
 }
 
 glm::vec3 inkOf(ImU32 color) {
@@ -128,12 +193,14 @@ void hover(const volume::Channel& channel, const StatisticsResult& result, const
 }
 
 void drawHistogramPlot(ViewContext& context, HistogramCache& cache, const HistogramView& view,
-                       const volume::Channel& channel, Range range, const StatisticsResult* result) {
+                       const volume::Channel& channel, Range range, const StatisticsResult* result,
+                       const HistogramFamily* family) {
     const ImVec2 origin = ImGui::GetCursorScreenPos(),
                  room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 4.5f)};
     const bool tall = room.y > em() * 8; // else without titles
     Plot plot = histogramPlot(channel, range, result ? &result->statistics.channels.front().histogram : nullptr,
                               histogramLook(context, view, result && result->brushed));
+    if (family) plot = familyPlot(channel, *family, view.logCounts, darkTheme());
     if (context.decoration.cursor) plot.cursorX = sharedReadout(context).value(channel.name);
     const TitlePlace title = tall ? TitlePlace::Beside : TitlePlace::Nowhere;
     const PlotFrame frame{
@@ -155,11 +222,12 @@ void drawHistogramPlot(ViewContext& context, HistogramCache& cache, const Histog
     drawBrushes(draw, context.session.selection, frame, channels);
     drawAxis(draw, frame, AxisSide::Bottom, tall ? channel.name : "", tall ? channel.unit : "", origin.x,
              origin.x + room.x);
-    if (hovered && !cache.drag.active && result) hover(channel, *result, frame, selectionName(context.session));
+    if (hovered && !cache.drag.active && result && !family) hover(channel, *result, frame, selectionName(context.session));
 }
 
 void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channel& channel,
-                 const std::shared_ptr<const StatisticsResult>& result) {
+                 const std::shared_ptr<const StatisticsResult>& result,
+                 const std::shared_ptr<HistogramFamily>& family) {
     std::string name = channel.name;
     ToolRow tools(context);
     const float width = std::min(em() * 11, tools.room() * 0.4f);
@@ -168,32 +236,34 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
         if (chooseChannel("##channel", &context.numbers->info(), name)) view.channel = name;
         if (ImGui::IsItemHovered()) tooltip("Parameter whose values are counted");
     }
+    chooseTimes(tools, context.numbers->info(), view.times, context.session);
     if (tools.next(em() * 3.5f)) {
         ImGui::Checkbox("log", &view.logCounts);
         if (ImGui::IsItemHovered()) tooltip("Logarithmic number of samples");
     }
     if (result) {
-        exportMenu(context, tools,
-                   {.name = channel.name + "-histogram",
-                    .figure =
-                        [result, channel, look = histogramLook(context, view, result->brushed),
-                         bands = brushedBands(context.session.selection, {channel.name, {}}),
-                         at = sharedReadout(context).value(channel.name)](const PageForm& form, const Progress&) {
-                            const volume::Histogram& histogram = result->statistics.channels.front().histogram;
-                            Plot plot = histogramPlot(channel, histogram.range, &histogram, onPage(look, form.dark));
-                            plot.brushed = bands;
-                            for (PlotBand& band : plot.brushed) band.color *= form.dark ? 1 : kOnWhite;
-                            plot.cursorX = at;
-                            return plotPage({plot}, 1, form);
-                        },
-                    .table =
-                        [result, channel,
-                         selected = result->brushed ? selectionName(context.session) : std::string()](const Progress&) {
-                            return histogramTable(channel, result->statistics.channels.front().histogram, selected);
-                        },
-                    .brushed = result->brushed});
+        exportMenu(
+            context, tools,
+            {.name = channel.name + "-histogram",
+             .figure =
+                 [result, family, channel, log = view.logCounts, look = histogramLook(context, view, result->brushed),
+                  bands = brushedBands(context.session.selection, {channel.name, {}}),
+                  at = sharedReadout(context).value(channel.name)](const PageForm& form, const Progress&) {
+                     const volume::Histogram& histogram = result->statistics.channels.front().histogram;
+                     Plot plot = histogramPlot(channel, histogram.range, &histogram, onPage(look, form.dark));
+                     if (family) plot = familyPlot(channel, *family, log, form.dark);
+                     plot.brushed = bands;
+                     for (PlotBand& band : plot.brushed) band.color *= form.dark ? 1 : kOnWhite;
+                     plot.cursorX = at;
+                     return plotPage({plot}, 1, form);
+                 },
+             .table =
+                 [result, family, channel, info = context.numbers->info()](const Progress&) {
+                     if (family) return familyTable(info, channel, *family);
+                     return histogramTable(channel, result->statistics.channels.front().histogram, result->brushed);
+                 }});
     }
-    if (result) drawOrigin(context, tools, {result->query.channels.front()});
+    if (result) drawOrigin(context, tools, {result->query.channels.front()}, !family);
     if (context.session.selection.brushes.empty()) drawNote(tools, "drag to brush");
 }
 
@@ -213,10 +283,25 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
     HistogramCache& cache = cacheOf<HistogramCache>(context, pane);
     const volume::Channel channel = info.channel(*index);
     const HistogramBins bins = histogramBins(info, *index, paddedRange(info.channelRange(channel), 0.02), view.bins);
-    const auto result = cache.answers.get(
-        context, "histogram " + pane, brushedQuery(context.session, info, {*index}, {bins.range}, bins.count, false));
-    drawToolbar(context, view, channel, result);
-    drawHistogramPlot(context, cache, view, channel, bins.range, result.get());
+    const std::vector<volume::TimePair> times = chosenTimes(info, view.times, context.session.time);
+    BrushedQuery query = brushedQuery(context.session, info, {*index}, {bins.range}, bins.count, false);
+    auto family = std::make_shared<HistogramFamily>();
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        query.time = times[i];
+        const std::string key = "histogram " + pane + (i > 0 ? " " + std::to_string(i) : "");
+        family->results.push_back(cache.answers.get(context, key, query));
+        if (i > 0 && family->results.back() && family->results.back()->query.time != times[i])
+            family->results.back() = nullptr; // still that of another time
+        family->times.push_back(volume::timeAt(info.times, times[i]));
+    }
+    family->names = stateNames(info, family->times);
+    const auto result = family->results.front();
+    if (result && result->brushed) family->selected = selectionName(context.session);
+    if (times.size() < 2 || (result && result->query.time != times.front()) ||
+        std::ranges::find(family->results, nullptr) != family->results.end())
+        family = nullptr;
+    drawToolbar(context, view, channel, result, family);
+    drawHistogramPlot(context, cache, view, channel, bins.range, result.get(), family.get());
     if (!cache.answers.failure().empty() && !result) ImGui::TextWrapped("%s", cache.answers.failure().c_str());
 }
 

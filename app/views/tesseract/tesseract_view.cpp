@@ -1,3 +1,5 @@
+#include "app/pane/axes3d.h"
+#include "app/pane/axis_label.h"
 #include "app/pane/corner_legends.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/keys.h"

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "app/pane/tool_row.h"
+#include "volume/field/dataset.h"
+#include "volume/field/time_pair.h"
+
+#include <vector>
+
+/// Several times in one plot.
+namespace tessera::app {
+
+/// The chosen times that the data reach to, each once and in order; without any, the time shown.
+std::vector<volume::TimePair> chosenTimes(const volume::DatasetInfo& info, const std::vector<double>& chosen,
+                                          double shown);
+
+/// A tool for data of several times: the time shown, all, or a tick for each. The time shown stays when others are
+/// added to it.
+void chooseTimes(ToolRow& tools, const volume::DatasetInfo& info, std::vector<double>& times, const Session& session);
+
+} // namespace tessera::app
