@@ -95,6 +95,7 @@ void drawToolbar(ViewContext& context, TesseractCache& cache, TesseractView& vie
         drawDescribed(view, WidgetContext{.info = &info});
         ImGui::EndPopup();
     }
+    drawNote(tools, "when and where values occur: what moves leans along " + axisNames(view)[3]);
 }
 
 float slidersHeight(float width) {
@@ -342,11 +343,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
         context.answers.busy = moving = true;
     }
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    if (!updateCloud(context, pane, cache, view, *channel)) {
-        const std::string failure = cache.answers.failure();
-        addTextWithBackdrop(draw, {(min.x + max.x) / 2, (min.y + max.y) / 2}, {0.5f, 0.5f}, plotColors().faint,
-                            failure.empty() ? "reading samples..." : failure.c_str());
-    }
+    const bool there = updateCloud(context, pane, cache, view, *channel);
 
     TesseractFrame frame;
     frame.min = min;
@@ -357,6 +354,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     frame.projection = {static_cast<double>(view.eye), 3, static_cast<double>(view.zoom)};
     frame.half = halfOf(view, info.bounds, context.session.stretch);
     frame.axes = axisNames(view);
+    numberEnds(frame, info, fourthChannel(info, view));
     frame.fourth = fourthColors();
 
     const ImVec4 ground = ImGui::ColorConvertU32ToFloat4(palette().plot);
@@ -386,6 +384,11 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
         drawNowCell(draw, frame, std::clamp((context.session.time - first) / (last - first), 0.0, 1.0), text);
     }
     drawTexts(context, view, frame, max, *channel);
+    if (!there) { // over the picture, which is empty until then
+        const std::string failure = cache.answers.failure();
+        addTextWithBackdrop(draw, {(min.x + max.x) / 2, (min.y + max.y) / 2}, {0.5f, 0.5f}, plotColors().text,
+                            failure.empty() ? "Reading the samples of all times..." : failure.c_str());
+    }
     if (hovered) drawReading(context, view, cache, frame, *channel);
     draw.PopClipRect();
     if (below > 0) drawSliders(view, cache, frame.rotation, room.x);
