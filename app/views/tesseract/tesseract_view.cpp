@@ -279,14 +279,15 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     const Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
     const PlotColors colors = plotColors();
-    if (context.decoration.axes) drawAxisNames4(draw, frame);
     std::string title = nearText(frame);
     if (const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes); !uneven.empty())
         title += "; " + uneven;
     if (context.decoration.title) // above the legends: at the left it would lie over the body
         addFittedWithBackdrop(draw, {max.x - em() * 0.5f, frame.min.y + em() * 0.4f}, {1, 0}, colors.faint, title,
                               max.x - frame.min.x - em());
-    if (!view.showLegend || !context.decoration.legend) return;
+    const bool legends = view.showLegend && context.decoration.legend;
+    if (!legends && context.decoration.axes) drawAxisNames4(draw, frame);
+    if (!legends) return;
     const std::optional<int> fourth = fourthChannel(info, view);
     std::vector<LegendEntry> entries;
     LegendEntry along;
@@ -308,7 +309,9 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     // The edges reach everywhere as it turns: the legends stay where they are.
     const LegendRoom room{frame.min, max};
     const auto nothing = [](ImVec2, ImVec2) { return 0.0; };
-    drawLegends(draw, entries, room, placeLegends(entries, room, {nothing}, figureLegends(context)));
+    const LegendArea area =
+        drawLegends(draw, entries, room, placeLegends(entries, room, {nothing}, figureLegends(context)));
+    if (context.decoration.axes) drawAxisNames4(draw, frame, {{area.min, area.max}});
 }
 
 } // namespace

@@ -121,7 +121,10 @@ void drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share, co
                 first = false;
             }
     }
-    if (!text.empty()) addTextWithBackdrop(draw, {top.x, top.y - em() * 0.3f}, {0.5f, 1}, colors.cursor, text.c_str());
+    const float below = frame.min.y + em() * 3; // of the title of the picture
+    if (!text.empty())
+        addTextWithBackdrop(draw, {top.x, std::max(top.y - em() * 0.3f, below)}, {0.5f, 1}, colors.cursor,
+                            text.c_str());
 }
 
 void numberEnds(TesseractFrame& frame, const volume::DatasetInfo& info, std::optional<int> fourth) {
@@ -139,7 +142,7 @@ void numberEnds(TesseractFrame& frame, const volume::DatasetInfo& info, std::opt
         put(3, {info.times.front(), info.times.back()}, info.timeUnit);
 }
 
-void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame) {
+void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame, std::vector<std::pair<ImVec2, ImVec2>> taken) {
     // The four edges of the corner that lies furthest down have their names where they cross nothing else.
     int corner = 0;
     double lowest = 0;
@@ -151,7 +154,6 @@ void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame) {
         }
     }
     const glm::dvec4 from = vis::corner4(corner, frame.half);
-    std::vector<std::pair<ImVec2, ImVec2>> taken;
     const auto write = [&](glm::dvec4 place, ImU32 color, const std::string& text) {
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
         const ImVec2 on = frame.pixel(frame.project(place).at);

@@ -8,6 +8,8 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 /// Lines and letters of a tesseract view, drawn over the points.
 namespace tessera::app {
@@ -37,8 +39,9 @@ void drawLattice4(ImDrawList& draw, const TesseractFrame& frame, int cells);
 void drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share, const std::string& text);
 /// Fills in the numbers at the ends of the axes; `fourth`: channel along the fourth, nothing for time.
 void numberEnds(TesseractFrame& frame, const volume::DatasetInfo& info, std::optional<int> fourth);
-/// Names of the axes beside four edges of one corner, the numbers at their far ends, and those of the corner.
-void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame);
+/// Names of the axes beside four edges of one corner, the numbers at their far ends, and those of the corner; none
+/// where rectangles are taken.
+void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame, std::vector<std::pair<ImVec2, ImVec2>> taken = {});
 /// What lies towards the eye of the fourth dimension, and is therefore drawn larger: "large: late t, right x".
 std::string nearText(const TesseractFrame& frame);
 
