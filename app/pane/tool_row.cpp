@@ -95,8 +95,11 @@ void exportMenu(ViewContext& context, ToolRow& tools, ViewExport asked, bool atO
                 return own;
             };
         if (asked.figure)
-            made.figure = [figure = asked.figure, origin](const PageForm& form, const Progress& progress) {
-                VectorPage drawing = figure(form, progress);
+            made.figure = [figure = asked.figure, origin, settings = context.session.figure](const PageForm& form,
+                                                                                             const Progress& progress) {
+                PageForm own = form;
+                own.figure = settings;
+                VectorPage drawing = figure(own, progress);
                 drawing.numbers = origin;
                 return drawing;
             };
