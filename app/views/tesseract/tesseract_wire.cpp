@@ -103,7 +103,8 @@ void drawLattice4(ImDrawList& draw, const TesseractFrame& frame, int cells) {
     drawPieces(draw, pieces);
 }
 
-void drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share, const std::string& text) {
+std::pair<ImVec2, ImVec2> drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share,
+                                      const std::string& text) {
     const double w = frame.half.w * (2 * share - 1);
     const PlotColors colors = plotColors();
     ImVec2 top{0, 0};
@@ -122,9 +123,9 @@ void drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share, co
             }
     }
     const float below = frame.min.y + em() * 3; // of the title of the picture
-    if (!text.empty())
-        addTextWithBackdrop(draw, {top.x, std::max(top.y - em() * 0.3f, below)}, {0.5f, 1}, colors.cursor,
-                            text.c_str());
+    const ImVec2 at{top.x, std::max(top.y - em() * 0.3f, below)}, size = ImGui::CalcTextSize(text.c_str());
+    addTextWithBackdrop(draw, at, {0.5f, 1}, colors.cursor, text.c_str());
+    return {{at.x - size.x / 2, at.y - size.y}, {at.x + size.x / 2, at.y}};
 }
 
 void numberEnds(TesseractFrame& frame, const volume::DatasetInfo& info, std::optional<int> fourth) {

@@ -35,8 +35,9 @@ vis::TransferFunction fourthColors();
 void drawWire(ImDrawList& draw, const TesseractFrame& frame);
 /// Lines of the lattice of `cells` cells along each axis.
 void drawLattice4(ImDrawList& draw, const TesseractFrame& frame, int cells);
-/// The cell at a share 0..1 of the fourth axis.
-void drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share, const std::string& text);
+/// The cell at a share 0..1 of the fourth axis; returns the corners of its text.
+std::pair<ImVec2, ImVec2> drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share,
+                                      const std::string& text);
 /// Fills in the numbers at the ends of the axes; `fourth`: channel along the fourth, nothing for time.
 void numberEnds(TesseractFrame& frame, const volume::DatasetInfo& info, std::optional<int> fourth);
 /// Names of the axes beside four edges of one corner, the numbers at their far ends, and those of the corner; none
