@@ -150,7 +150,7 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
         if (!label.empty() && ImGui::CalcTextSize(label.c_str()).x <= length) break;
     }
     const float taken = options.inlineTitle && bottom ? ImGui::CalcTextSize(label.c_str()).x + em() * 0.5f : 0;
-    float previousEnd = -1e9f, widest = 0;
+    float previousEnd = -1e9f, above = 1e9f, widest = 0; // of the last number below, and beside
     for (std::size_t i = 0; i < ticks.values.size(); ++i) {
         const ImVec2 size = ImGui::CalcTextSize(ticks.texts[i].c_str());
         widest = std::max(widest, size.x);
@@ -168,6 +168,8 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
             if (options.grid) draw.AddLine({frame.min.x, at}, {frame.max.x, at}, colors.grid);
             draw.AddLine({frame.min.x - tickLength(), at}, {frame.min.x, at}, colors.frame);
             const float top = std::max(lo, std::min(at - size.y / 2, hi - size.y));
+            if (top + size.y > above + 0.5f) continue;
+            above = top;
             draw.AddText({std::round(frame.min.x - tickLength() - em() * 0.15f - size.x), std::round(top)}, colors.text,
                          ticks.texts[i].c_str());
         }

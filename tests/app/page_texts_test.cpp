@@ -162,7 +162,8 @@ protected:
 
 TEST_P(PageTexts, LieOverNoOthersAndOnThePage) {
     for (const Opened* const opened : {cell, longNames})
-        for (const std::size_t panels : {1u, 2u, 4u})
+        for (const std::size_t panels :
+             opened == cell ? std::vector<std::size_t>{1, 2, 4} : std::vector<std::size_t>{1, 4})
             for (const std::vector<std::string>& panes : figures(panels)) {
                 std::string named = opened == cell ? "cell" : "long names";
                 for (const std::string& pane : panes) named += " " + pane;
