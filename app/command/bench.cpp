@@ -13,7 +13,9 @@
 namespace tessera::app {
 
 void addBenchCommand(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("bench", "Measure the tables of docs/benchmarks.md on this machine");
+    CLI::App* command = app.add_subcommand(
+        "bench", "Measure the tables of docs/benchmarks.md on this machine, by the program tessera-bench, "
+                 "which is built on demand: --target tessera-bench");
     command->set_help_flag(); // --help is passed on to tessera-bench
     command->prefix_command();
     command->callback([command] {

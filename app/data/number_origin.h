@@ -39,6 +39,7 @@ struct NumberOrigin {
     int parameters = -1;
     /// Numbers of regions as they were computed, which an archive with a bound keeps; null: none are known.
     std::shared_ptr<const volume::ComputedNumbers> computed = {};
+    double packedBytes = 0; ///< of the archive that data shown as packed are drawn from; 0: there is none
     bool operator==(const NumberOrigin&) const = default;
 };
 

@@ -64,7 +64,8 @@ Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress&
     } const remove{name};
     codec::pack(dataset, *data.packed, name, progress);
     const auto archive = std::make_shared<const codec::Archive>(name);
-    const NumberOrigin computed = computedOrigin(dataset.info);
+    NumberOrigin computed = computedOrigin(dataset.info);
+    computed.packedBytes = double(archive->fileBytes());
     if (!data.originals) {
         std::shared_ptr<const volume::BrickSource> packed = archive;
         if (data.packed->lattice != codec::StoredLattice::CC)
@@ -75,6 +76,7 @@ Sources openPacked(volume::Dataset dataset, const DataRef& data, const Progress&
     }
     NumberOrigin origin = storedOrigin(archive->metadata(), !archive->metadata().corrections.empty());
     origin.originals = true;
+    origin.packedBytes = double(archive->fileBytes());
     origin.parameters = 2 * int(dataset.info.parameters.size());
     const auto original = volume::makeMemorySource(std::move(dataset), onGrid());
     // Pictures too refer to points of the file's grid, as after unpacking: on the lattice of the archive, the originals
@@ -187,6 +189,7 @@ Sources openWhole(const DataRef& data, std::vector<std::string>& messages, const
         std::vector<volume::LabelRule> rules;
         for (const std::string& rule : data.import.labels) rules.push_back(volume::parseLabelRule(rule));
         volume::applyLabels(dataset.info, rules);
+        dataset = volume::withParameters(std::move(dataset), data.import.parameters);
     } else {
         std::vector<std::string> paths;
         for (const DataFile& file : data.files) paths.push_back(file.absolutePath);

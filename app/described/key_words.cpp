@@ -11,6 +11,7 @@ namespace {
 
 /// Keys are never changed, so that old sessions open; what users read follows docs/glossary.md.
 constexpr std::pair<std::string_view, std::string_view> kReplacements[] = {
+    {"center", "centre"},
     {"channel", "parameter"},
     {"channels", "parameters"},
     {"color", "colour"},

@@ -226,7 +226,7 @@ void PictureDialog::drawPanels(const Session& session, const volume::DatasetInfo
     slider("##columns", columns_, 0, std::max(2, int(panels_.size())), columns_ == 0 ? "as many as suit" : "%d");
 }
 
-std::optional<PictureRequest> PictureDialog::drawForm(Appearance& appearance) {
+std::optional<PictureRequest> PictureDialog::drawForm(Session& session) {
     const WidgetContext widgets{nullptr, 0.3f};
     PictureForm& form = *form_;
     ImGui::PushID("size");
@@ -253,11 +253,12 @@ std::optional<PictureRequest> PictureDialog::drawForm(Appearance& appearance) {
     };
     valueOf(form).visitMembers([&](Value member, const FieldInfo& field) {
         if (field.key == "decoration")
-            valueOf(appearance).visitMembers([&](Value part, const FieldInfo& of) {
+            valueOf(session.appearance).visitMembers([&](Value part, const FieldInfo& of) {
                 if (of.key == "legends") row(part, of);
             });
         if (field.key != "size") row(member, field);
     });
+    valueOf(session.figure).visitMembers(row);
     return request;
 }
 
@@ -272,7 +273,7 @@ std::optional<PictureRequest> PictureDialog::draw(Session& session, const volume
         const Scrolled settings(3 * ImGui::GetStyle().ItemSpacing.y + ImGui::GetFrameHeight() +
                                 (vectors ? 2 : 1) * ImGui::GetTextLineHeightWithSpacing());
         drawWhat(session, info);
-        request = drawForm(session.appearance);
+        request = drawForm(session);
     }
     ImGui::Spacing();
     if (vectors) ImGui::TextDisabled("Texts and lines are vectors.");

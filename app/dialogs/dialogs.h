@@ -65,7 +65,7 @@ public:
 private:
     void drawWhat(const Session& session, const volume::DatasetInfo& info);
     void drawPanels(const Session& session, const volume::DatasetInfo& info);
-    std::optional<PictureRequest> drawForm(Appearance& appearance);
+    std::optional<PictureRequest> drawForm(Session& session);
     /// What is chosen. Throws Error where it cannot be drawn.
     PictureRequest request() const;
 

@@ -8,12 +8,20 @@
 
 namespace tessera::app {
 
+namespace {
+
+/// Whether a widget of the dialog had the keyboard when its frame began: then Enter was for that.
+constexpr const char* kHadKeyboard = "hadKeyboard";
+
+} // namespace
+
 bool beginDialog(const char* title, bool& open, float width) {
     if (open && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({width, 0});
     if (!ImGui::BeginPopupModal(title, &open, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoResize))
         return false;
+    ImGui::GetStateStorage()->SetBool(ImGui::GetID(kHadKeyboard), ImGui::IsAnyItemActive());
     if (escapePressed() && !ImGui::IsWindowAppearing()) open = false; // not by the key that asked
     return true;
 }
@@ -41,8 +49,9 @@ int dialogButtons(std::initializer_list<const char*> names) {
         if (last) ImGui::PopStyleColor(2);
         ++index;
     }
-    // Ignore the Enter that has just closed the previous dialog.
-    if (chosen < 0 && pressed({.key = key::kEnter}) && !ImGui::IsAnyItemActive() && !ImGui::IsWindowAppearing())
+    // Ignore the Enter that has just closed the previous dialog, and that which ends typing in a field.
+    const bool typed = ImGui::GetStateStorage()->GetBool(ImGui::GetID(kHadKeyboard));
+    if (chosen < 0 && pressed({.key = key::kEnter}) && !typed && !ImGui::IsWindowAppearing())
         chosen = static_cast<int>(names.size()) - 1;
     return chosen;
 }

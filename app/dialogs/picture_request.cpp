@@ -13,7 +13,12 @@ std::vector<std::string> panesOf(const PictureRequest& request) {
     return request.pane.empty() ? std::vector<std::string>() : std::vector<std::string>{request.pane};
 }
 
-PictureRequest pictureRequest(const PictureForm& form, const std::string& pane) {
+PictureRequest pictureRequest(const PictureForm& asked, const std::string& pane) {
+    PictureForm form = asked;
+    // Vectors have no pixels, and the pictures among them have as many as the largest text leaves.
+    if (const double scale = double(scaleForText(form.size.textPixels()));
+        form.size.onPaper() && form.format != PictureFormat::Png && scale > double(kLargestScale))
+        form.size.dpi *= double(kLargestScale) * 0.999 / scale;
     PictureRequest request;
     request.pane = pane;
     request.size = form.size.pixels();

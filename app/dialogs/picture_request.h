@@ -20,6 +20,7 @@ struct PictureRequest {
     PictureGround ground = PictureGround::Shown;
     Decoration decoration = {};
     PictureFormat format = PictureFormat::Png; ///< proposed
+    bool fixed = false;                        ///< a table has this height, too, and not that of its rows
 };
 
 /// The panes that a picture shows; none: the whole window.

@@ -45,6 +45,40 @@ struct Placed {
 
 } // namespace
 
+namespace {
+
+constexpr double kTitleLine = 1.3, kTitleMargin = 0.4; // ems
+
+std::vector<std::string> linesOfTitle(const std::string& title, double width, double text) {
+    return brokenText(title, width / text - 2 * kTitleMargin, Face::Bold);
+}
+
+} // namespace
+
+double titleHeight(const std::string& title, double width, double text) {
+    return (double(linesOfTitle(title, width, text).size()) * kTitleLine + 2 * kTitleMargin) * text;
+}
+
+VectorPage titledPage(VectorPage page, const std::string& title, double text, glm::vec4 ground, glm::vec4 ink) {
+    const double height = titleHeight(title, page.size.x, text);
+    const Placed below{{0, height}, 1};
+    for (Mark& mark : page.marks) std::visit([&](auto& shape) { below.move(shape); }, mark.shape);
+    page.size.y += height;
+    // A little more than the page, which may grow to whole pixels.
+    page.marks.insert(page.marks.begin(), {Rect{.box = {{0, 0}, page.size + text}, .color = ground}});
+    double base = (kTitleMargin + 1) * text;
+    for (const std::string& line : linesOfTitle(title, page.size.x, text)) {
+        page.marks.push_back({Words{.text = line,
+                                    .at = {page.size.x / 2, base},
+                                    .size = text,
+                                    .color = ink,
+                                    .face = Face::Bold,
+                                    .anchor = 0.5}});
+        base += kTitleLine * text;
+    }
+    return page;
+}
+
 int usualColumns(int panels) {
     return std::max(1, int(std::ceil(std::sqrt(double(panels)))));
 }

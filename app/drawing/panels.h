@@ -4,6 +4,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <string>
 #include <vector>
 
 /// Several pages as the panels of one figure, lettered a, b, c.
@@ -20,6 +21,11 @@ int usualColumns(int panels);
 /// Places of `panels` equal panels in rows in a figure of `size` pixels, each below a strip for its letter; `text`:
 /// size of an em in pixels. Throws Error where that leaves panels less than 16 pixels high or wide.
 std::vector<PanelPlace> panelPlaces(glm::ivec2 size, int panels, int columns, double text);
+
+/// What a title above a figure takes of its height, points; `text`: size of an em.
+double titleHeight(const std::string& title, double width, double text);
+/// A page with a title above it, in the middle: so much higher than the page.
+VectorPage titledPage(VectorPage page, const std::string& title, double text, glm::vec4 ground, glm::vec4 ink);
 
 /// The letters of panels: a to z, then aa.
 std::string panelLetter(int panel);

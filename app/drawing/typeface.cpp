@@ -1,5 +1,6 @@
 #include "app/drawing/typeface.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <ft2build.h>
@@ -69,6 +70,22 @@ double textWidth(std::string_view text, Face face) {
         while (more && i + 1 < text.size() && (static_cast<unsigned char>(text[i + 1]) & 0xc0) == 0x80) ++i;
     }
     return width;
+}
+
+std::vector<std::string> brokenText(const std::string& text, double width, Face face) {
+    std::vector<std::string> lines(1);
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find(' ', at), text.size());
+        const std::string word = text.substr(at, end - at), longer = lines.back() + " " + word;
+        if (at == 0)
+            lines.back() = word;
+        else if (textWidth(longer, face) <= width)
+            lines.back() = longer;
+        else
+            lines.push_back(word);
+        at = end + 1;
+    }
+    return lines;
 }
 
 } // namespace tessera::app

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 /// The fonts of windows, pictures and figures.
 namespace tessera::app {
@@ -19,5 +21,8 @@ const Typeface& typeface(Face face);
 /// The width of a line of text in ems; characters that the font lacks, and all where it is not installed, are 0.56
 /// wide.
 double textWidth(std::string_view text, Face face = Face::Text);
+
+/// A text broken at blanks into lines of at most `width` ems; what has no blanks stays whole.
+std::vector<std::string> brokenText(const std::string& text, double width, Face face = Face::Text);
 
 } // namespace tessera::app

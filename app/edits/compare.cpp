@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace tessera::app {
 
@@ -163,6 +164,28 @@ GridShape gridFor(int count, double width, double height) {
         best = {columns, rows};
     }
     return best;
+}
+
+DataRef drawnData(const Session& session, const volume::DatasetInfo& info) {
+    DataRef data = session.data;
+    if (!data.packed || !data.derived.empty() || data.other || data.originals || !data.import.parameters.empty())
+        return data;
+    std::set<std::string> names;
+    bool known = true;
+    const auto add = [&](const std::string& name) {
+        if (name.empty()) return;
+        const auto channel = info.findChannel(name);
+        known = known && channel;
+        if (channel) names.insert(info.parameters[std::size_t(info.channel(*channel).parameter)].name);
+    };
+    for (const vis::Layer& layer : session.layers) {
+        add(vis::shownChannel(layer.technique));
+        add(vis::colorByOf(layer.technique));
+    }
+    for (const vis::Brush& brush : session.selection.brushes)
+        for (const std::string& name : vis::regionChannels(brush.region)) add(name);
+    if (known) data.import.parameters.assign(names.begin(), names.end());
+    return data;
 }
 
 } // namespace tessera::app

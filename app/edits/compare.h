@@ -47,4 +47,8 @@ struct CompareRow {
     std::optional<volume::SourceDifference> data; ///< of the first layer's samples, where both have them
 };
 
+/// The data of the scene of a variant: of those that are packed for it only the parameters that it draws, since packing
+/// takes long. `info`: of the session's data.
+DataRef drawnData(const Session& session, const volume::DatasetInfo& info);
+
 } // namespace tessera::app

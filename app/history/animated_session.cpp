@@ -72,6 +72,26 @@ Between betweenAt(const Session& session, const std::string& path) {
     return between;
 }
 
+std::vector<std::string> trackProblems(const Session& session) {
+    std::vector<std::string> problems;
+    for (std::size_t i = 0; i < session.animation.tracks.size(); ++i) {
+        const Track& track = session.animation.tracks[i];
+        const std::string place = "/animation/tracks/" + std::to_string(i);
+        const std::size_t components = numbersAt(session, track.path).size();
+        if (components == 0 || track.path.starts_with("/animation")) {
+            problems.push_back(place + ": keyframes of \"" + track.path +
+                               "\" are ignored: this is no setting that keyframes can change");
+            continue;
+        }
+        for (std::size_t k = 0; k < track.keys.size(); ++k)
+            if (const std::size_t own = track.keys[k].value.size(); own != components)
+                problems.push_back(place + "/keys/" + std::to_string(k) + ": the keyframe is ignored: it has " +
+                                   std::to_string(own) + (own == 1 ? " number, " : " numbers, ") + track.path +
+                                   " has " + std::to_string(components));
+    }
+    return problems;
+}
+
 void applyTracks(Session& session, double at) {
     const std::vector<Track> tracks = session.animation.tracks;
     for (const Track& track : tracks)

@@ -3,6 +3,8 @@
 #include "app/session/animation.h"
 
 #include <span>
+#include <string>
+#include <vector>
 
 /// The settings of a session as numbers that keyframes hold.
 namespace tessera::app {
@@ -16,7 +18,11 @@ std::vector<double> numbersAt(const Session& session, const std::string& path);
 bool setNumbersAt(Session& session, const std::string& path, std::span<const double> numbers);
 Between betweenAt(const Session& session, const std::string& path);
 
-/// Sets the keyed parameters to their values at `at` seconds. Ignores tracks of parameters that the session lacks.
+/// Keyframes of a session that do nothing, a sentence each: those of parameters that it lacks, and keys with another
+/// number of components than their parameter.
+std::vector<std::string> trackProblems(const Session& session);
+
+/// Sets the keyed parameters to their values at `at` seconds. Ignores keyframes that do nothing (trackProblems).
 void applyTracks(Session& session, double at);
 
 /// Sets the key of a parameter at the animation's position to its present value; adds the track on first use. An

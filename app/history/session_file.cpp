@@ -1,5 +1,7 @@
 #include "app/history/session_file.h"
 
+#include "app/history/animated_session.h"
+
 #include "app/described/within_ranges.h"
 #include "codec/remote/address.h"
 #include "volume/base/error.h"
@@ -159,6 +161,8 @@ SessionDocument parseSession(std::string_view text, const std::string& file) {
     document.session = sessionFromJson(known, file, &document.unknown);
     for (const JsonIssue& issue : document.unknown)
         document.messages.push_back((file.empty() ? "" : file + ": ") + issue.path + ": unknown key, kept");
+    for (const std::string& problem : trackProblems(document.session))
+        document.messages.push_back((file.empty() ? "" : file + ": ") + problem);
     document.history.reset(document.session);
     if (const auto history = document.raw.find("history"); history != document.raw.end()) {
         try {

@@ -15,7 +15,7 @@ struct SessionDocument {
     Session session;
     History history;
     std::vector<JsonIssue> unknown;    ///< keys this version does not know; written again when saved
-    std::vector<std::string> messages; ///< for the log: unknown keys, a history that was dropped
+    std::vector<std::string> messages; ///< for the log: unknown keys, idle keyframes, a history that was dropped
     Json raw;                          ///< as read, migrated: tells which keys a layout leaves out
 };
 

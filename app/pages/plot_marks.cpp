@@ -17,10 +17,12 @@ constexpr double kRampGap = 6, kRampWidth = 8, kRampText = 3;       // of a key 
 constexpr double kPageDash = 5, kPageDashPeriod = 8, kPageDot = 2.2;
 
 /// The ticks of an axis that have room: their texts lie along it, or each takes a line.
-TickLabels pageTicks(const PlotAxis& axis, double length, bool lines, double text) {
+TickLabels pageTicks(const PlotAxis& axis, double length, bool lines, const PageForm& form) {
+    const double text = form.text;
     if (!axis.numbered) return {};
-    return scaledTicks(axis.range, axis.scale, length, text * (lines ? 0.8 : 1.2), true,
-                       [&](const std::string& each) { return lines ? text : pageTextWidth(each, text); });
+    return scaledTicks(
+        axis.range, axis.scale, length, text * (lines ? 0.8 : 1.2), true,
+        [&](const std::string& each) { return lines ? text : pageTextWidth(each, text); }, form.figure.ticks);
 }
 
 class PlotMarks {
@@ -109,7 +111,7 @@ private:
         }
     }
     void below() {
-        const TickLabels ticks = pageTicks(plot_.x, x1_ - x0_, false, text_);
+        const TickLabels ticks = pageTicks(plot_.x, x1_ - x0_, false, form_);
         double free = -HUGE_VAL; // from here on there is no number
         for (std::size_t i = 0; i < ticks.values.size(); ++i) {
             const double x = px(ticks.values[i]), half = pageTextWidth(ticks.texts[i], text_) / 2;
@@ -127,14 +129,16 @@ private:
             words((x0_ + x1_) / 2, y0_ + points(30), noted(plot_.x, ticks, place_.left + x1_ - x0_, text_), 0.5);
     }
     void beside() {
-        const TickLabels ticks = pageTicks(plot_.y, y0_ - y1_, true, text_);
+        const TickLabels ticks = pageTicks(plot_.y, y0_ - y1_, true, form_);
         double widest = 0, free = HUGE_VAL; // up to there is no number
         for (std::size_t i = 0; i < ticks.values.size(); ++i) {
             const double y = py(ticks.values[i]);
             stroke({{x0_ - points(4), y}, {x0_, y}}, inks_.frame, kPageThin);
             widest = std::max(widest, pageTextWidth(ticks.texts[i], text_));
             if (!place_.numbersBeside || y > free) continue;
-            words(x0_ - points(6), y + points(3), ticks.texts[i], 1, 0, plot_.y.ink);
+            const double base = y + points(3);
+            words(x0_ - points(6), place_.stacked ? std::min(std::max(base, y1_ + 2 * kMiddle * text_), y0_) : base,
+                  ticks.texts[i], 1, 0, plot_.y.ink);
             free = y - text_;
         }
         if (!place_.numbersBeside) return;

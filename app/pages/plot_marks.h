@@ -31,6 +31,7 @@ struct PlotPlace {
     double left = 0, bottom = 0; ///< room for numbers and titles, points
     double overhang = 0;         ///< how far numbers may stand over the sides
     double above = 0;            ///< between the plot and its title
+    bool stacked = false;        ///< among others above and below: numbers beside it stay within its height
 };
 
 /// Height of a line of text where there are several, in sizes of text.

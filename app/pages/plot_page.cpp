@@ -132,7 +132,7 @@ private:
     }
     std::vector<std::string> textsBeside(const PlotAxis& axis, int most) const {
         if (!axis.numbered) return {};
-        if (axis.scale.isEven()) return tickLabels(axis.range, most).texts;
+        if (axis.scale.isEven()) return styledTickLabels(axis.range, most, true, form_.figure.ticks).texts;
         return scaledTicks(axis.range, axis.scale, most, 0, true, [](const std::string&) { return 0.9; }).texts;
     }
     double numbersBeside() const {
@@ -193,6 +193,7 @@ PlotPlace plotPlaceOf(const std::vector<Plot>& plots, const PlotGrid& grid, int 
     PlotPlace place{
         .box = grid.box(i), .acrossBelow = grid.acrossBelow, .up = grid.up, .left = grid.left, .bottom = grid.bottom};
     place.overhang = grid.sharedY ? 0 : kPageRight * form.text / kFigureText;
+    place.stacked = grid.rows > 1;
     place.above = grid.up == UpTitle::Above && form.axes ? form.text * kLineHeight : 0;
     if (grid.sharedX) // the last of its column
         for (int later = i + grid.columns; later < int(plots.size()); later += grid.columns)
@@ -273,6 +274,14 @@ SeriesLists placeLists(const std::vector<Plot>& plots, const PlotGrid& grid, con
     return lists;
 }
 
+/// The same with the captions that the user gave their axes.
+std::vector<Plot> captioned(std::vector<Plot> plots, const FigureSettings& settings) {
+    if (settings.captions.empty()) return plots;
+    for (Plot& plot : plots)
+        for (PlotAxis* const axis : {&plot.x, &plot.y}) axis->title = captionOf(settings, axis->title);
+    return plots;
+}
+
 [[noreturn]] void throwNoRoom(std::size_t plots, const PageForm& form) {
     char text[160];
     std::snprintf(text, sizeof text, "%zu plot%s with text of %g pt %s no room on a page of %.0f x %.0f pt", plots,
@@ -282,11 +291,13 @@ SeriesLists placeLists(const std::vector<Plot>& plots, const PlotGrid& grid, con
 
 } // namespace
 
-glm::dvec2 plotArea(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared) {
+glm::dvec2 plotArea(const std::vector<Plot>& shown, int columns, const PageForm& form, bool shared) {
+    const std::vector<Plot> plots = captioned(shown, form.figure);
     return PlotLayout(plots, form, form.size, shared).best(columns, 0).plot;
 }
 
-VectorPage plotPage(const std::vector<Plot>& plots, int columns, const PageForm& form, bool shared) {
+VectorPage plotPage(const std::vector<Plot>& shown, int columns, const PageForm& form, bool shared) {
+    const std::vector<Plot> plots = captioned(shown, form.figure);
     PlotGrid grid = PlotLayout(plots, form, form.size, shared).best(columns, 0);
     const SeriesLists lists = placeLists(plots, grid, form);
     if (lists.above > 0 || lists.below > 0) {

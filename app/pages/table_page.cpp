@@ -16,23 +16,6 @@ constexpr double kTableHeavy = 0.09, kTableLight = 0.05;   // rules
 
 using CellLines = std::vector<std::string>;
 
-/// A text broken at blanks into lines of at most `width` ems; what has no blanks stays whole.
-CellLines brokenText(const std::string& text, double width) {
-    CellLines lines(1);
-    for (std::size_t at = 0; at <= text.size();) {
-        const std::size_t end = std::min(text.find(' ', at), text.size());
-        const std::string word = text.substr(at, end - at), longer = lines.back() + " " + word;
-        if (at == 0)
-            lines.back() = word;
-        else if (textWidth(longer) <= width)
-            lines.back() = longer;
-        else
-            lines.push_back(word);
-        at = end + 1;
-    }
-    return lines;
-}
-
 double widthOfLines(const CellLines& lines) {
     double width = 0;
     for (const std::string& line : lines) width = std::max(width, textWidth(line));
@@ -167,13 +150,11 @@ private:
     glm::vec4 ink_;
 };
 
-} // namespace
-
-VectorPage tablePage(const Table& table, const PageForm& form) {
+/// A table in texts of `em` points or smaller ones that its widest columns need.
+VectorPage printedTable(const Table& table, const PageForm& form, double em) {
     const std::vector<const TableColumn*> shown = shownColumns(table);
     const std::vector<std::vector<std::string>> cells = cellsOf(table, true);
     const std::size_t names = std::min(table.names, shown.size());
-    double em = form.text;
     const double room = form.size.x / em;
     std::vector<PrintedColumn> columns;
     double widest = 0, naming = 0;
@@ -210,6 +191,19 @@ VectorPage tablePage(const Table& table, const PageForm& form) {
     page.size = {form.size.x > 0 ? form.size.x : width * em, (printer.height() + kTableMargin) * em};
     const float ground = form.dark ? 0.075f : 1;
     page.marks.front() = {shapes::Rect{.box = {{0, 0}, page.size}, .color = {ground, ground, ground, 1}}};
+    return page;
+}
+
+} // namespace
+
+VectorPage tablePage(const Table& table, const PageForm& form) {
+    VectorPage page = printedTable(table, form, form.text);
+    if (!form.fixed || form.size.y <= 0) return page;
+    constexpr double kSmaller = 0.95;
+    for (double em = form.text; page.size.y > form.size.y && em > 1; em *= kSmaller)
+        page = printedTable(table, form, em * kSmaller);
+    page.size.y = form.size.y;
+    std::get<shapes::Rect>(page.marks.front().shape).box.hi.y = form.size.y;
     return page;
 }
 

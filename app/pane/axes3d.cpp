@@ -183,27 +183,18 @@ TickLabels ticksAlong(const LabelledEdge& edge, const AxisLabel& label) {
     const float pixels = length({edge.b.x - edge.a.x, edge.b.y - edge.a.y});
     const double perUnit = label.unit.perUnit;
     const Range range{edge.from[edge.axis] * perUnit, edge.to[edge.axis] * perUnit};
-    TickLabels ticks;
-    // As many as fit along this edge on screen without overlap.
+    // As many as fit along this edge on screen without overlap: texts clear each other where they do so across or
+    // upwards.
     const float dx = std::abs(edge.b.x - edge.a.x) / pixels, dy = std::abs(edge.b.y - edge.a.y) / pixels;
-    if (const AxisScale scale = label.scale(); !scale.isEven()) {
-        // Texts clear each other where they do so across or upwards.
-        const auto extent = [&](const std::string& text) {
-            const double across = (double(ImGui::CalcTextSize(text.c_str()).x) + double(em())) / std::max(1e-6f, dx);
-            return std::min(across, double(em()) * 1.4 / std::max(1e-6f, dy));
-        };
-        const Range drawn{scale.place(range.lo), scale.place(range.hi)};
-        return scaledTicks(drawn, scale, double(pixels), 0, true, extent);
-    }
-    for (int most : {8, 6, 5, 4, 3, 2, 1}) {
-        ticks = tickLabels(range, most);
-        float widest = 0;
-        for (const std::string& text : ticks.texts) widest = std::max(widest, ImGui::CalcTextSize(text.c_str()).x);
-        const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : range.hi - range.lo;
-        const double between = step / std::max(1e-300, range.hi - range.lo) * pixels;
-        if (between * dx >= widest + em() || between * dy >= em() * 1.4f) break;
-    }
-    return ticks;
+    const auto extent = [&](const std::string& text) {
+        const double across = (double(ImGui::CalcTextSize(text.c_str()).x) + double(em())) / std::max(1e-6f, dx);
+        return std::min(across, double(em()) * 1.4 / std::max(1e-6f, dy));
+    };
+    constexpr int kMostSteps = 8;
+    TickStyle style = label.ticks;
+    if (style.most == 0) style.most = kMostSteps;
+    const AxisScale scale = label.scale();
+    return scaledTicks({scale.place(range.lo), scale.place(range.hi)}, scale, double(pixels), 0, true, extent, style);
 }
 
 void drawAxes3d(ImDrawList& draw, const SpaceFrame& frame, const vis::Camera& camera, const AxisLabels& labels,
@@ -245,7 +236,7 @@ void drawLabelledEdges(ImDrawList& draw, const SpaceFrame& frame, const std::vec
             if (place(besides(start, edge.outward, size), colors.text, ticks.texts[i]))
                 furthest = std::max(furthest, std::abs(edge.outward.x) * size.x + std::abs(edge.outward.y) * size.y);
         }
-        std::string title = titleWithUnit(label.name, label.unit.name);
+        std::string title = titleWithUnit(label.title(), label.unit.name);
         if (!ticks.note.empty()) title += "  " + ticks.note;
         const ImVec2 size = ImGui::CalcTextSize(title.c_str());
         bool placed = false;

@@ -22,6 +22,10 @@ AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info) {
     if (const volume::TimeAxis* time = timeAxisOf(session, info))
         labels[std::size_t(time->axis)] = {.name = timeWord(info),
                                            .unit = {info.timeUnit, volume::timePerLength(info, *time)}};
+    for (AxisLabel& label : labels) {
+        label.caption = captionOf(session.figure, label.name);
+        label.ticks = session.figure.ticks;
+    }
     return labels;
 }
 

@@ -13,12 +13,16 @@ namespace tessera::app {
 /// Label of positions along an axis: its letter, and a suitable unit for its extent.
 struct AxisLabel {
     std::string name = "x";
+    std::string caption = {}; ///< that the user gave it
+    TickStyle ticks = {};     ///< of its numbers
     LengthUnit unit;
     std::shared_ptr<const volume::AxisMap> map = {}; ///< of an axis that is drawn by cells
     bool reversed = false;                           ///< positions along the axis of the map, times -1
     bool blank =
         false; ///< positions have no numbers: the direction runs across several axes, of which one is uneven or more
 
+    /// What stands at the axis.
+    const std::string& title() const { return caption.empty() ? name : caption; }
     /// Of positions in the unit.
     AxisScale scale() const { return {map, unit.perUnit, reversed, blank}; }
 };

@@ -41,7 +41,7 @@ public:
         const float top = min.y + em() * 0.3f;
         const std::string whole = titleWithUnit(entry.title, entry.unit);
         const std::string end = whole.substr(entry.title.size()), cut = fitBefore(entry.title, end, title_ + 1);
-        const std::string title = firstThatFits({whole, entry.title, cut.empty() ? entry.title : cut}, title_ + 1);
+        const std::string title = firstThatFits({whole, cut.empty() ? entry.title : cut, entry.title}, title_ + 1);
         draw.AddText(min, colors.text, title.c_str());
         const ImVec2 lo{min.x + title_ + number_ + 2 * gap_, top},
             hi{min.x + width_ - number_ - gap_, top + legendStripHeight()};

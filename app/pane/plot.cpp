@@ -25,13 +25,16 @@ TickLabels labelsOf(Range range, int most, bool noted) {
 }
 
 /// As many ticks as fit without the labels touching. `noted`: numbers may be shortened, which the note says.
-TickLabels ticksOn(AxisSide side, Range range, float length, bool noted, const AxisScale& scale) {
+TickLabels ticksOn(AxisSide side, Range range, float length, bool noted, const AxisScale& scale,
+                   const TickStyle& style = {}) {
     const bool bottom = side == AxisSide::Bottom;
-    return scaledTicks(range, scale, double(length), double(em() * (bottom ? 0.9f : 0.1f)), noted,
-                       [&](const std::string& text) {
-                           const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-                           return double(bottom ? size.x : size.y);
-                       });
+    return scaledTicks(
+        range, scale, double(length), double(em() * (bottom ? 0.9f : 0.1f)), noted,
+        [&](const std::string& text) {
+            const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+            return double(bottom ? size.x : size.y);
+        },
+        style);
 }
 
 } // namespace
@@ -60,11 +63,6 @@ Range paddedRange(Range range, double share) {
         return {range.lo - half, range.hi + half};
     }
     return {range.lo - span * share, range.hi + span * share};
-}
-
-bool darkTheme() {
-    const ImVec4 background = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
-    return background.x + background.y + background.z < 1.5f;
 }
 
 std::array<ImU32, 2> sampleColors(bool dark) {
@@ -134,24 +132,26 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
     const bool bottom = side == AxisSide::Bottom;
     const Range range = bottom ? frame.x : frame.y;
     const bool titled = !title.empty() || !unit.empty();
-    const TickLabels ticks =
-        ticksOn(side, range, bottom ? frame.width() : frame.height(), titled || options.noteElsewhere, options.scale);
+    const TickLabels ticks = ticksOn(side, range, bottom ? frame.width() : frame.height(),
+                                     titled || options.noteElsewhere, options.scale, options.ticks);
     PlotColors colors = plotColors();
     if (options.ink != 0) colors.text = colors.faint = options.ink;
-    // If not all fits: the note comes first, since the numbers are wrong without it; then the title, then the unit; of
-    // a title that does not fit alone, the unit comes before its last letters.
+    // If not all fits: the note comes first, since the numbers are wrong without it; then the unit and what it leaves
+    // of the title, if that is more than a few letters; then the title alone.
     const std::string note = ticks.note.empty() ? "" : "  " + ticks.note;
     const float length = bottom || !options.inlineTitle ? hi - lo : 1e6f;
     std::string label;
     const std::string whole = titleWithUnit(title, unit) + note;
+    constexpr std::size_t kFewLetters = 6; // three of them dots
+    const std::string end = whole.substr(title.size()), cut = fitBefore(title, end, length);
     for (const std::string& text :
-         {whole, std::string(title) + note, fitBefore(title, whole.substr(title.size()), length),
-          ticks.note.empty() ? fitText(title, length) : ticks.note}) {
+         {whole, cut.size() > end.size() + kFewLetters ? cut : std::string(title) + note, std::string(title) + note,
+          cut, ticks.note.empty() ? fitText(title, length) : ticks.note}) {
         label = text;
         if (!label.empty() && ImGui::CalcTextSize(label.c_str()).x <= length) break;
     }
     const float taken = options.inlineTitle && bottom ? ImGui::CalcTextSize(label.c_str()).x + em() * 0.5f : 0;
-    float previousEnd = -1e9f, widest = 0;
+    float previousEnd = -1e9f, above = 1e9f, widest = 0; // of the last number below, and beside
     for (std::size_t i = 0; i < ticks.values.size(); ++i) {
         const ImVec2 size = ImGui::CalcTextSize(ticks.texts[i].c_str());
         widest = std::max(widest, size.x);
@@ -169,6 +169,8 @@ void drawAxis(ImDrawList& draw, const PlotFrame& frame, AxisSide side, std::stri
             if (options.grid) draw.AddLine({frame.min.x, at}, {frame.max.x, at}, colors.grid);
             draw.AddLine({frame.min.x - tickLength(), at}, {frame.min.x, at}, colors.frame);
             const float top = std::max(lo, std::min(at - size.y / 2, hi - size.y));
+            if (top + size.y > above + 0.5f) continue;
+            above = top;
             draw.AddText({std::round(frame.min.x - tickLength() - em() * 0.15f - size.x), std::round(top)}, colors.text,
                          ticks.texts[i].c_str());
         }

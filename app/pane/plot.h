@@ -2,6 +2,7 @@
 
 #include "app/ui/axis_scale.h"
 #include "app/ui/fitted_text.h"
+#include "app/ui/theme.h"
 #include "volume/base/describe.h"
 
 #include <algorithm>
@@ -43,7 +44,6 @@ struct PlotColors {
 PlotColors plotColors();
 /// Those of bars of samples and of samples in focus, on a light or dark ground.
 std::array<ImU32, 2> sampleColors(bool dark);
-bool darkTheme();
 
 /// One em: the height of the font.
 inline float em() {
@@ -62,8 +62,9 @@ struct AxisOptions {
     /// Pixels outside of the frame for a left axis, so that several have their titles in one column; 0 = as needed.
     float room = 0;
     bool noteElsewhere = false; ///< an axis without title: the caller writes axisNote()
-    AxisScale scale = {};       ///< numbers of an axis that is drawn by cells; values of the frame are its places
-    ImU32 ink = 0;              ///< of numbers and title; 0: that of texts
+    TickStyle ticks = {};
+    AxisScale scale = {}; ///< numbers of an axis that is drawn by cells; values of the frame are its places
+    ImU32 ink = 0;        ///< of numbers and title; 0: that of texts
 };
 
 /// Where the title of an axis is, with what its numbers must be read with.

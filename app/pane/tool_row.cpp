@@ -103,8 +103,11 @@ void exportMenu(ViewContext& context, ToolRow& tools, ViewExport asked, bool atO
                 return own;
             };
         if (asked.figure)
-            made.figure = [figure = asked.figure, origin, notes](const PageForm& form, const Progress& progress) {
-                VectorPage drawing = figure(form, progress);
+            made.figure = [figure = asked.figure, origin, notes,
+                           settings = context.session.figure](const PageForm& form, const Progress& progress) {
+                PageForm own = form;
+                own.figure = settings;
+                VectorPage drawing = figure(own, progress);
                 drawing.numbers = origin;
                 for (const std::string& note : notes) drawing.numbers += "; " + note;
                 return drawing;

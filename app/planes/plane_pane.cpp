@@ -169,16 +169,17 @@ void drawOver(ViewContext& context, PlaneState& state, const PlanePicture& pictu
 void drawPlaneAxes(const PlanePicture& picture, const PlotFrame& plot, const PlaneAxes& axes) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     if (axes.below)
-        drawAxis(draw, plot, AxisSide::Bottom, picture.right.name, picture.right.unit.name, axes.min.x,
-                 std::min(axes.max.x, plot.max.x + em() * 4), {.inlineTitle = true, .scale = picture.right.scale()});
+        drawAxis(draw, plot, AxisSide::Bottom, picture.right.title(), picture.right.unit.name, axes.min.x,
+                 std::min(axes.max.x, plot.max.x + em() * 4),
+                 {.inlineTitle = true, .ticks = picture.right.ticks, .scale = picture.right.scale()});
     const std::string note = axisNote(AxisSide::Left, plot.y, plot.height(), picture.up.scale()),
                       unit = picture.up.unit.name;
     const auto fits = [&](const std::string& text) {
         return ImGui::CalcTextSize((note.empty() ? text : text + "  " + note).c_str()).x <= axes.title;
     };
-    const bool whole = fits(titleWithUnit(picture.up.name, unit)), named = whole || fits(picture.up.name);
-    drawAxis(draw, plot, AxisSide::Left, named ? picture.up.name : "", whole ? unit : "", axes.min.y, axes.max.y,
-             {.inlineTitle = !axes.beside, .room = axes.left, .scale = picture.up.scale()});
+    const bool whole = fits(titleWithUnit(picture.up.title(), unit)), named = whole || fits(picture.up.title());
+    drawAxis(draw, plot, AxisSide::Left, named ? picture.up.title() : "", whole ? unit : "", axes.min.y, axes.max.y,
+             {.inlineTitle = !axes.beside, .room = axes.left, .ticks = picture.up.ticks, .scale = picture.up.scale()});
 }
 
 void drawPlaneLegend(const ViewContext& context, const PlanePicture& picture, const Readout& readout, bool named) {

@@ -1,12 +1,15 @@
 #include "app/platform/headless.h"
 
 #include "app/drawing/panels.h"
+#include "app/platform/fitted_camera.h"
 #include "app/platform/gui.h"
+#include "app/session/shown_scene.h"
 #include "vis/gl/headless.h"
 #include "volume/base/error.h"
 #include "volume/base/terminal.h"
 #include "volume/system/atomic_file.h"
 
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -32,7 +35,8 @@ PageForm pageForm(const PictureRequest& request, Theme theme) {
             .axes = shown.axes,
             .title = shown.title,
             .cursor = shown.cursor,
-            .outlines = shown.outlines};
+            .outlines = shown.outlines,
+            .fixed = request.fixed};
 }
 
 namespace {
@@ -67,29 +71,94 @@ auto withWorkbench(const SessionDocument& document, const Sources& sources, std:
     return draw(workbench);
 }
 
-/// A view as a page: its own figure if that has all that the pane shows, else what ImGui draws of it.
+/// The document with the camera of a volume view moved so that what is seen fills the picture, if figures are to be so.
+SessionDocument fitted(const SessionDocument& document, const Sources& sources,
+                       const std::shared_ptr<vis::Renderer>& renderer, const PictureRequest& request) {
+    SessionDocument moved = document;
+    VolumeView* const view = document.session.figure.fit ? volumeView(moved.session, request.pane) : nullptr;
+    if (!view) return moved;
+    constexpr double kLonger = 384; // pixels, of the pictures by which the camera is moved
+    PictureRequest bare = request;
+    bare.decoration = *Decoration::preset("none");
+    bare.size =
+        glm::max(glm::ivec2(glm::dvec2(request.size) * kLonger / double(std::max(request.size.x, request.size.y))),
+                 glm::ivec2(16));
+    bare.scale = 1;
+    moved.session.paper = vis::Paper{.color = glm::vec3(1), .tooth = 0};
+    vis::Camera& camera = view->camera ? *view->camera : moved.session.camera;
+    constexpr int kRounds = 2; // since what is near is drawn larger
+    for (int round = 0; round < kRounds; ++round) {
+        const vis::Image image = withWorkbench(moved, sources, renderer, bare, [&](Workbench& workbench) {
+            return drawUntilDone(workbench, bare.size, bare.scale);
+        });
+        const std::optional<SeenExtent> seen = seenExtent(image);
+        if (!seen) break;
+        fitToSeen(camera, *seen, double(bare.size.x) / double(bare.size.y));
+    }
+    moved.session.paper = document.session.paper;
+    return moved;
+}
+
+/// The figure of the pane that a request draws, where that has all that the pane shows.
+std::optional<VectorPage> figureOfPane(const Workbench& workbench, const PictureRequest& request, Theme theme) {
+    const ViewExport* offered = request.pane.empty() ? nullptr : workbench.exported(request.pane);
+    if (!offered || !offered->figure || !offered->whole) return {};
+    return offered->figure(pageForm(request, theme), {});
+}
+
+/// A view as a page: its own figure if that has all that the pane shows, else what ImGui draws of it; as a picture
+/// where `raster`.
 VectorPage pageOfPane(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
-                      const PictureRequest& request, const Inspect& inspect) {
-    return withWorkbench(document, sources, std::move(renderer), request, [&](Workbench& workbench) {
-        OffscreenFrames target(request.size, false);
+                      const PictureRequest& request, const Inspect& inspect, bool raster) {
+    const SessionDocument shown = fitted(document, sources, renderer, request);
+    return withWorkbench(shown, sources, std::move(renderer), request, [&](Workbench& workbench) {
+        OffscreenFrames target(request.size, raster);
         drawUntilDone(target, workbench, request.scale);
         if (inspect) inspect(workbench);
-        const ViewExport* offered = workbench.exported(request.pane);
-        if (offered && offered->figure && offered->whole)
-            return offered->figure(pageForm(request, document.session.appearance.theme), {});
-        VectorPage page = target.page(workbench, pointsPerPixel(request));
-        page.numbers = originText(sources.origin, sources.numbers->info());
+        if (auto figure = figureOfPane(workbench, request, document.session.appearance.theme)) return *figure;
+        const double points = pointsPerPixel(request);
+        if (!raster) {
+            VectorPage page = target.page(workbench, points);
+            page.numbers = originText(sources.origin, sources.numbers->info());
+            return page;
+        }
+        VectorPage page;
+        page.size = glm::dvec2(request.size) * points;
+        page.marks.push_back({shapes::Picture{.box = {{0, 0}, page.size}, .image = target.read(), .smooth = false}});
         return page;
     });
 }
 
 vis::Image imageOfPane(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
                        const PictureRequest& request, const Inspect& inspect) {
-    return withWorkbench(document, sources, std::move(renderer), request, [&](Workbench& workbench) {
-        vis::Image image = drawUntilDone(workbench, request.size, request.scale);
+    const SessionDocument shown = fitted(document, sources, renderer, request);
+    return withWorkbench(shown, sources, std::move(renderer), request, [&](Workbench& workbench) {
+        OffscreenFrames target(request.size);
+        drawUntilDone(target, workbench, request.scale);
         if (inspect) inspect(workbench);
-        return image;
+        if (const auto figure = figureOfPane(workbench, request, document.session.appearance.theme))
+            return imageOf(*figure, request.size);
+        return target.read();
     });
+}
+
+struct FigureInks {
+    glm::vec4 ground, ink;
+};
+FigureInks figureInks(const PictureRequest& request, Theme theme) {
+    const bool white = request.ground == PictureGround::White, dark = !white && theme == Theme::Dark;
+    return {white ? glm::vec4(1) : glm::vec4(windowGround(theme), 1), glm::vec4(glm::vec3(dark ? 0.9f : 0.1f), 1)};
+}
+
+/// The request without the room of the title that is set for figures; none for a picture of the whole window.
+PictureRequest belowTitle(const PictureRequest& request, const std::string& title) {
+    PictureRequest below = request;
+    if (title.empty() || panesOf(request).empty()) return below;
+    const double text = textPixels(request.scale);
+    below.size.y -= int(std::ceil(titleHeight(title, double(request.size.x), text)));
+    constexpr int kLeast = 16;
+    if (below.size.y < kLeast) throw Error("the title leaves no room for the figure: " + title);
+    return below;
 }
 
 /// The panels of a request as one page; `pageOf(request of a panel)`.
@@ -104,39 +173,49 @@ template <class PageOf> VectorPage panelsOf(const PictureRequest& request, Theme
         panel.panels.clear();
         panel.pane = request.panels[i];
         panel.size = places[i].hi - places[i].lo;
+        panel.fixed = true;
         pages.push_back(pageOf(panel));
     }
-    const bool dark = request.ground == PictureGround::Shown && theme == Theme::Dark;
-    return figureOfPanels(glm::dvec2(request.size) * points, places, pages, points, text * points,
-                          request.ground == PictureGround::White ? glm::vec4(1) : glm::vec4(windowGround(theme), 1),
-                          glm::vec4(glm::vec3(dark ? 0.9f : 0.1f), 1));
+    const FigureInks inks = figureInks(request, theme);
+    return figureOfPanels(glm::dvec2(request.size) * points, places, pages, points, text * points, inks.ground,
+                          inks.ink);
+}
+
+/// A figure with the title that the session states, of the size of the request; `make(request below the title)`.
+template <class Make>
+VectorPage titled(const SessionDocument& document, const PictureRequest& request, const Make& make) {
+    const std::string& title = document.session.figure.title;
+    const PictureRequest below = belowTitle(request, title);
+    VectorPage page = make(below);
+    if (below.size == request.size) return page;
+    const double points = pointsPerPixel(request);
+    const FigureInks inks = figureInks(request, document.session.appearance.theme);
+    const bool whole = page.size.y >= double(below.size.y) * points - 1e-6; // not a table of its own height
+    page = titledPage(std::move(page), title, textPixels(request.scale) * points, inks.ground, inks.ink);
+    if (whole) page.size.y = double(request.size.y) * points;
+    return page;
 }
 
 VectorPage pageOfRequest(const SessionDocument& document, const Sources& sources,
                          const std::shared_ptr<vis::Renderer>& renderer, const PictureRequest& request,
-                         const Inspect& inspect) {
-    const auto page = [&](const PictureRequest& one) { return pageOfPane(document, sources, renderer, one, inspect); };
-    return request.panels.empty() ? page(request) : panelsOf(request, document.session.appearance.theme, page);
+                         const Inspect& inspect, bool raster) {
+    return titled(document, request, [&](const PictureRequest& below) {
+        const auto page = [&](const PictureRequest& one) {
+            return pageOfPane(document, sources, renderer, one, inspect, raster);
+        };
+        return below.panels.empty() ? page(below) : panelsOf(below, document.session.appearance.theme, page);
+    });
 }
 
 vis::Image renderAndInspect(const SessionDocument& document, const Sources& sources,
-                            std::shared_ptr<vis::Renderer> renderer, const PictureRequest& request,
+                            const std::shared_ptr<vis::Renderer>& renderer, const PictureRequest& request,
                             const Inspect& inspect) {
-    vis::Image image;
-    if (request.panels.empty()) {
-        image = imageOfPane(document, sources, renderer, request, inspect);
-    } else {
-        const auto page = [&](const PictureRequest& one) {
-            const double points = pointsPerPixel(request);
-            VectorPage made;
-            made.size = glm::dvec2(one.size) * points;
-            made.marks.push_back({shapes::Picture{.box = {{0, 0}, made.size},
-                                                  .image = imageOfPane(document, sources, renderer, one, inspect),
-                                                  .smooth = false}});
-            return made;
-        };
-        image = imageOf(panelsOf(request, document.session.appearance.theme, page), request.size);
-    }
+    const bool composed = !request.panels.empty() || (!request.pane.empty() && !document.session.figure.title.empty());
+    PictureRequest whole = request;
+    whole.fixed = true;
+    vis::Image image = composed
+                           ? imageOf(pageOfRequest(document, sources, renderer, whole, inspect, true), request.size)
+                           : imageOfPane(document, sources, renderer, whole, inspect);
     image.dpi = request.dpi;
     return image;
 }
@@ -153,13 +232,13 @@ std::string vectorSuffix(const std::string& path) {
 void writePicture(const SessionDocument& document, const Sources& sources, std::shared_ptr<vis::Renderer> renderer,
                   const PictureRequest& request, const std::string& path, const Inspect& inspect) {
     if (const std::string suffix = vectorSuffix(path); !suffix.empty()) {
-        VectorPage page = pageOfRequest(document, sources, renderer, request, inspect);
+        VectorPage page = pageOfRequest(document, sources, renderer, request, inspect, false);
         page.session = printSession(document, path);
         AtomicFile file(path);
         file.write(fileOf(page, suffix));
         return file.commit();
     }
-    const vis::Image image = renderAndInspect(document, sources, std::move(renderer), request, inspect);
+    const vis::Image image = renderAndInspect(document, sources, renderer, request, inspect);
     vis::writePng(path, image, {{vis::kSessionTextKey, printSession(document, path)}});
 }
 
@@ -193,7 +272,7 @@ std::string PictureMaker::table(const SessionDocument& document, const Sources& 
 }
 
 VectorPage PictureMaker::page(const SessionDocument& document, const Sources& sources, const PictureRequest& request) {
-    return pageOfRequest(document, sources, impl_->renderer, request, {});
+    return pageOfRequest(document, sources, impl_->renderer, request, {}, false);
 }
 
 void PictureMaker::write(const SessionDocument& document, const Sources& sources, const PictureRequest& request,

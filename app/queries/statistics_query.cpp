@@ -90,6 +90,9 @@ HistogramBins histogramBins(const volume::DatasetInfo& info, int channel, Range 
     const auto whole = [](Range r) { return std::floor(r.lo) == r.lo && std::floor(r.hi) == r.hi; };
     if (!integer || of.magnitude || parameter.ranges.empty() || !std::ranges::all_of(parameter.ranges, whole))
         return {range, count};
+    // Integers from 0 to 1 may be stored from 0 to 65535: so few whole numbers would be all bars.
+    constexpr double kFewest = 8;
+    if (const Range data = info.channelRange(of); data.hi - data.lo + 1 < kFewest) return {range, count};
     const double first = std::ceil(range.lo) - 0.5, numbers = std::max(1.0, std::floor(range.hi) + 0.5 - first);
     const double each = std::ceil(numbers / count), bins = std::ceil(numbers / each);
     return {{first, first + bins * each}, static_cast<int>(bins)};

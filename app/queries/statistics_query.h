@@ -30,8 +30,8 @@ struct HistogramBins {
     Range range;
     int count = 1;
 };
-/// `count` bins over the range of a channel; for whole numbers at most as many bins as numbers, each with equally many:
-/// bins of one number beside bins of two look like a comb.
+/// `count` bins over the range of a channel; for stored integers at most as many bins as values, each with equally
+/// many: bins of one value beside bins of two look like a comb.
 HistogramBins histogramBins(const volume::DatasetInfo& info, int channel, Range range, int count);
 
 /// Of these channels and their pairs under the session's time, brushes and lenses that mark. Channels that only the

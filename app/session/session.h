@@ -2,6 +2,7 @@
 
 #include "app/session/animation.h"
 #include "app/session/dock_tree.h"
+#include "app/session/figure_settings.h"
 #include "app/session/views/view_state.h"
 #include "codec/pack/pack.h"
 #include "codec/remote/remote_options.h"
@@ -183,6 +184,7 @@ struct Session {
     std::optional<vis::Paper> paper; ///< in place of the theme's background
     Animation animation;
     Appearance appearance;
+    FigureSettings figure;
     // What is open, and where.
     std::map<std::string, ViewState> views; ///< by pane key, e.g. "volume", "slices", "volume-2"
     DockTree dock;
@@ -222,6 +224,7 @@ struct Session {
         visit(self.paper, FieldInfo{"paper", "Paper behind the picture; none: the background of the theme"});
         visit(self.animation, FieldInfo{"animation", "Playing through time or keyframes"});
         visit(self.appearance, FieldInfo{"appearance", "Appearance of the window"});
+        visit(self.figure, FieldInfo{"figure", "Texts and axes of figures"});
         visit(self.views, FieldInfo{"views", "Views by the name of their pane"});
         visit(self.dock, FieldInfo{.key = "dock", .doc = "Arrangement of the panes", .hidden = true});
     }

@@ -130,8 +130,8 @@ private:
 } // namespace
 
 TickLabels scaledTicks(Range range, const AxisScale& scale, double length, double gap, bool noted,
-                       const std::function<double(const std::string&)>& extent) {
-    if (scale.isEven()) return fittingTicks(range, length, gap, noted, extent);
+                       const std::function<double(const std::string&)>& extent, const TickStyle& style) {
+    if (scale.isEven()) return fittingTicks(range, length, gap, noted, extent, style);
     if (scale.blank) return {};
     return ScaledTicks(range, scale, length, gap, extent).choose();
 }

@@ -24,8 +24,8 @@ struct AxisScale {
 
 /// The ticks that fit on an axis of this length, as fittingTicks() of even ones: round numbers where there is room,
 /// fewer where cells are thin. `values` are places; numbers are written in full, as exactly as they are placed. Two
-/// texts never come closer than `gap`. `extent`: of a text along the axis.
+/// texts never come closer than `gap`. `extent`: of a text along the axis. `style`: of the numbers of even axes.
 TickLabels scaledTicks(Range range, const AxisScale& scale, double length, double gap, bool noted,
-                       const std::function<double(const std::string&)>& extent);
+                       const std::function<double(const std::string&)>& extent, const TickStyle& style = {});
 
 } // namespace tessera::app

@@ -10,8 +10,6 @@ namespace {
 
 constexpr float kTextSize = 15; // from the highest ascender to the lowest descender
 
-Palette currentPalette;
-
 ImVec4 rgb(unsigned hex, float alpha = 1) {
     return {float(hex >> 16 & 255) / 255, float(hex >> 8 & 255) / 255, float(hex & 255) / 255, alpha};
 }
@@ -191,11 +189,16 @@ void applyTheme(Theme theme, float scale) {
     ImGuiStyle style = styleSizes(shades.dark, scale);
     setColors(style.Colors, shades);
     ImGui::GetStyle() = style;
-    currentPalette = paletteOf(shades);
+}
+
+bool darkTheme() {
+    const ImVec4 background = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
+    return background.x + background.y + background.z < 1.5f;
 }
 
 const Palette& palette() {
-    return currentPalette;
+    static const Palette dark = paletteOf(Shades(true)), light = paletteOf(Shades(false));
+    return darkTheme() ? dark : light;
 }
 
 } // namespace tessera::app

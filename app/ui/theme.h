@@ -27,7 +27,10 @@ Fonts loadFonts(float scale);
 /// Sets ImGui's style: sizes for the scale, colours for the theme.
 void applyTheme(Theme theme, float scale);
 
-/// Colours for custom drawing, for the theme last applied.
+/// Whether that theme is dark, in ImGui's current context: a picture on white has one of its own beside the window's.
+bool darkTheme();
+
+/// Colours for custom drawing, for the theme of ImGui's current context.
 struct Palette {
     ImU32 text, muted, accent, accentSoft, panel, plot, grid, line, warning, failure, good;
 };

@@ -186,17 +186,56 @@ TickLabels fullTickLabels(Range range, int most) {
     return out;
 }
 
+TickLabels styledTickLabels(Range range, int most, bool noted, const TickStyle& style) {
+    if (style.numbers == TickNumbers::Automatic) return noted ? tickLabels(range, most) : fullTickLabels(range, most);
+    TickLabels out{niceTicks(range, most), {}, {}};
+    const double step = niceStep(range.hi - range.lo, most);
+    const char* const format = style.numbers == TickNumbers::Decimals ? "%.*f" : "%.*e";
+    for (const double value : out.values) {
+        const double shown = std::abs(value) < step * 1e-9 ? 0 : value;
+        out.texts.push_back(withoutNegativeZero(tidyExponent(print(format, style.decimals, shown))));
+    }
+    return out;
+}
+
+namespace {
+
+/// The first and the last of the coarsest ticks that have room beside each other; none where no two have.
+TickLabels endTicks(Range range, double length, double gap, bool noted,
+                    const std::function<double(const std::string&)>& extent, const TickStyle& style) {
+    const double span = range.hi - range.lo;
+    if (!(span > 0)) return {};
+    for (const int most : {2, 3, 4, 5, 6, 8, 10, 15, 20}) {
+        TickLabels all = styledTickLabels(range, most, noted, style);
+        if (all.values.size() < 2) continue;
+        const double apart = (all.values.back() - all.values.front()) / span * length;
+        if (apart < (extent(all.texts.front()) + extent(all.texts.back())) / 2 + gap) continue;
+        return {{all.values.front(), all.values.back()}, {all.texts.front(), all.texts.back()}, all.note};
+    }
+    return {};
+}
+
+} // namespace
+
 TickLabels fittingTicks(Range range, double length, double gap, bool noted,
-                        const std::function<double(const std::string&)>& extent) {
+                        const std::function<double(const std::string&)>& extent, const TickStyle& style) {
     TickLabels ticks;
-    for (const int most : {10, 8, 6, 5, 4, 3, 2, 1}) {
-        ticks = noted ? tickLabels(range, most) : fullTickLabels(range, most);
+    std::vector<int> tried{10, 8, 6, 5, 4, 3, 2, 1};
+    if (style.most > 0) {
+        std::erase_if(tried, [&](int most) { return most >= style.most; });
+        tried.insert(tried.begin(), style.most);
+    }
+    for (const int most : tried) {
+        ticks = styledTickLabels(range, most, noted, style);
         double widest = 0;
         for (const std::string& text : ticks.texts) widest = std::max(widest, extent(text));
         const double span = range.hi - range.lo;
         const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : span;
         if (span <= 0 || step / span * length >= widest + gap) break;
     }
+    // One number says nothing of a scale: rather two round ones near the ends, where they have room.
+    if (ticks.values.size() < 2)
+        if (TickLabels ends = endTicks(range, length, gap, noted, extent, style); !ends.values.empty()) return ends;
     return ticks;
 }
 

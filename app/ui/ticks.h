@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/session/figure_settings.h"
 #include "volume/base/describe.h"
 
 #include <functional>
@@ -47,11 +48,14 @@ struct TickLabels {
 TickLabels tickLabels(Range range, int most, int maxDigits = 6);
 /// The same with numbers in full, for axes beside which no note has a place.
 TickLabels fullTickLabels(Range range, int most);
+/// The same as the user sets numbers: as tickLabels or, without `noted`, fullTickLabels, or in full with the decimals
+/// or exponents that are set.
+TickLabels styledTickLabels(Range range, int most, bool noted, const TickStyle& style);
 
 /// As many ticks as fit on an axis of this length with a gap between their texts, as tickLabels or, without `noted`,
-/// fullTickLabels has them. `extent`: of a text along the axis.
+/// fullTickLabels has them, or fewer and otherwise as the user sets them. `extent`: of a text along the axis.
 TickLabels fittingTicks(Range range, double length, double gap, bool noted,
-                        const std::function<double(const std::string&)>& extent);
+                        const std::function<double(const std::string&)>& extent, const TickStyle& style = {});
 
 /// A length unit that suits a box of this size: the name and how many of it make one of `unit` (m, cm, mm, um and nm
 /// are known; others stay as they are).

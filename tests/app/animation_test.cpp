@@ -3,6 +3,7 @@
 
 #include "app/history/history.h"
 #include "app/history/parameter_path.h"
+#include "app/history/session_file.h"
 #include "app/session/session.h"
 
 #include <cmath>
@@ -123,6 +124,26 @@ TEST(Tracks, SurviveTheSessionFile) {
     session.animation.tracks[0].keys[0].easing = Easing::Out;
     setKey(session, "/render/step");
     EXPECT_EQ(sessionFromJson(toJson(session), {}), session);
+}
+
+TEST(Tracks, ThoseThatDoNothingAreSaidWhereASessionIsOpened) {
+    Session session;
+    session.animation.tracks = {{"/camera/distance", {{0, {1}}, {1, {2, 3, 4}}}}, {"/camera/distant", {{0, {1}}}}};
+    session.animation.tracks.push_back({"/animation/speed", {{0, {1}}}});
+    const auto reopened = [&] {
+        SessionDocument document;
+        document.session = session;
+        return parseSession(printSession(document, "a.tessera.json"), "a");
+    };
+    const SessionDocument opened = reopened();
+    ASSERT_EQ(opened.messages.size(), 3u);
+    EXPECT_EQ(opened.messages[0],
+              "a: /animation/tracks/0/keys/1: the keyframe is ignored: it has 3 numbers, /camera/distance has 1");
+    EXPECT_THAT(opened.messages[1], testing::HasSubstr("/animation/tracks/1: keyframes of \"/camera/distant\""));
+    EXPECT_THAT(opened.messages[2], testing::HasSubstr("/animation/tracks/2"));
+    session.animation.tracks.resize(1);
+    session.animation.tracks[0].keys.pop_back();
+    EXPECT_TRUE(reopened().messages.empty());
 }
 
 TEST(Tracks, WhatPlaysIsNoEdit) {

@@ -11,7 +11,8 @@ namespace tessera::app {
 namespace {
 
 const volume::Box kBox{{0, 0, 0}, {4, 4, 4}};
-const AxisLabels kLabels{AxisLabel{"x", {"mm", 1}}, AxisLabel{"y", {"mm", 1}}, AxisLabel{"z", {"mm", 1}}};
+const AxisLabels kLabels{AxisLabel{.name = "x", .unit = {"mm", 1}}, AxisLabel{.name = "y", .unit = {"mm", 1}},
+                         AxisLabel{.name = "z", .unit = {"mm", 1}}};
 
 class AxesTest : public FedImGui {
 protected:

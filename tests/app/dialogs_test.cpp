@@ -1,5 +1,6 @@
 #include "app/dialogs/dialogs.h"
 #include "app/dialogs/file_questions.h"
+#include "app/ui/keys.h"
 #include "app/ui/theme.h"
 #include "codec/pack/pack.h"
 #include "tests/app/drawn_text.h"
@@ -71,6 +72,41 @@ TEST_F(Dialogs, APictureSaysThatItHoldsItsSessionAndWhatAreVectors) {
     EXPECT_THAT(drawnWords(), Contains(holds));
 }
 
+TEST_F(Dialogs, EnterInANumberFieldEndsItsNumberAlone) {
+    Session session;
+    addView(session, *viewOfKind("volume"));
+    PictureDialog dialog;
+    dialog.show("volume");
+    std::optional<PictureRequest> saved;
+    const auto draw = [&] {
+        if (auto request = dialog.draw(session, {}, "")) saved = request;
+    };
+    frames(4, draw);
+    const auto enter = [&] {
+        for (const bool down : {true, false}) {
+            feedKey(ImGui::GetIO(), key::kEnter, down);
+            frames(2, draw);
+        }
+    };
+    DrawnText number;
+    for (const DrawnText& each : drawnTexts())
+        if (each.text.starts_with("1920") && number.text.empty()) number = each;
+    ASSERT_FALSE(number.text.empty());
+    mouse = number.middle();
+    frames(2, draw);
+    feedModifiers(ImGui::GetIO(), true, false, false);
+    click(number.middle(), draw);
+    feedModifiers(ImGui::GetIO(), false, false, false);
+    ImGui::GetIO().AddInputCharactersUTF8("800");
+    frames(2, draw);
+    enter();
+    EXPECT_FALSE(saved) << "the number alone was meant";
+    EXPECT_THAT(drawnWords(), Contains(HasSubstr("800 x 1080 pixels")));
+    enter();
+    ASSERT_TRUE(saved) << "now nothing is typed";
+    EXPECT_EQ(saved->size.x, 800);
+}
+
 // 640x360 at scale 1 are 1280x720 at scale 2.
 TEST_F(Dialogs, ButtonsOfAPictureAreInSightWhereItsSettingsScroll) {
     Session session;
@@ -80,19 +116,19 @@ TEST_F(Dialogs, ButtonsOfAPictureAreInSightWhereItsSettingsScroll) {
     const auto draw = [&] { dialog.draw(session, {}, ""); };
     frames(5, draw);
     const float whole = find("Save...").min.y - find("What").min.y;
-    EXPECT_NEAR(find("Save...").min.y - find("Decoration").max.y, 3 * ImGui::GetFrameHeight(), ImGui::GetFrameHeight())
+    EXPECT_NEAR(find("Save...").min.y - find("Fit").max.y, 3 * ImGui::GetFrameHeight(), ImGui::GetFrameHeight())
         << "no gap above the buttons of a window with room";
     ImGui::GetIO().DisplaySize = {640, 360};
     frames(5, draw);
     for (const char* each : {"Cancel", "Save..."}) EXPECT_LT(find(each).max.y, 360) << each;
     EXPECT_GT(find("What").min.y, 0);
-    EXPECT_THAT(drawnWords(), Not(Contains("Decoration"))) << "settings scroll";
+    EXPECT_THAT(drawnWords(), Not(Contains("Fit"))) << "settings scroll";
     mouse = find("Height").middle();
     for (int i = 0; i < 9; ++i) {
         ImGui::GetIO().MouseWheel = -2;
         frames(2, draw);
     }
-    EXPECT_LT(find("Decoration").max.y, find("Save...").min.y);
+    EXPECT_LT(find("Fit").max.y, find("Save...").min.y);
     EXPECT_LT(find("Save...").max.y, 360);
     ImGui::GetIO().DisplaySize = {900, 700};
     frames(5, draw);

@@ -37,6 +37,15 @@ TEST(HistogramBins, OfWholeNumbersHoldEquallyMany) {
     EXPECT_EQ(histogramBins(info, 0, {0, 255}, 192).count, 128);
 }
 
+TEST(HistogramBins, OfScaledIntegersAreNoTwoBars) {
+    volume::DatasetInfo info = bytesAndFloats();
+    info.parameters[0].type = volume::ScalarType::U16; // stored from 0 to 65535
+    info.parameters[0].ranges = {{0, 1}};
+    const HistogramBins bins = histogramBins(info, 0, {-0.02, 1.02}, 192);
+    EXPECT_EQ(bins.count, 192);
+    EXPECT_EQ(bins.range, (Range{-0.02, 1.02}));
+}
+
 vis::Brush brush(const char* channel, glm::vec3 color) {
     vis::Brush out;
     out.color = color;

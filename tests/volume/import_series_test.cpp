@@ -113,6 +113,23 @@ TEST_F(ImportSeries, Pvd) {
     }
 }
 
+TEST_F(ImportSeries, AListOpensWithoutTheFilesThatAreMissingAndSaysWhich) {
+    write("a.vti");
+    write("c.vti");
+    const std::string path = write("list.pvd", R"(<Collection><DataSet timestep="0" file="a.vti"/>
+        <DataSet timestep="0.25" file="b.vti"/><DataSet timestep="2" file="c.vti"/></Collection>)");
+    std::vector<std::string> missing;
+    const std::vector<SeriesFile> files = expandPaths({path}, Outside::Refused, &missing);
+    EXPECT_THAT(names(files), testing::ElementsAre("a.vti", "c.vti"));
+    EXPECT_EQ(files[1].time, 2);
+    ASSERT_EQ(missing.size(), 1u);
+    EXPECT_THAT(missing[0], testing::AllOf(testing::HasSubstr("list.pvd lists "), testing::HasSubstr("b.vti"),
+                                           testing::HasSubstr("does not exist: time 0.25 is left out")));
+    const std::string none = write("none.pvd", R"(<Collection><DataSet timestep="0" file="b.vti"/></Collection>)");
+    EXPECT_THROW(expandPaths({none}, Outside::Refused, &missing), Error);
+    EXPECT_EQ(missing.size(), 1u);
+}
+
 TEST_F(ImportSeries, SeriesJson) {
     write("a.vtu");
     write("b.vtu");

@@ -58,35 +58,6 @@ void nameParameters(DatasetInfo& info, const ImportOptions& options) {
     stateQuantities(info, options);
 }
 
-/// Keeps only the requested parameters and the labels of their parts. Until here all of them are needed by rules.
-Dataset withParameters(Dataset dataset, const std::vector<std::string>& wanted) {
-    if (wanted.empty()) return dataset;
-    std::vector<int> kept;
-    for (const std::string& name : wanted) {
-        const auto at = std::find_if(dataset.info.parameters.begin(), dataset.info.parameters.end(),
-                                     [&](const Parameter& parameter) { return parameter.name == name; });
-        if (at == dataset.info.parameters.end()) throw Error(noSuchParameter(name, dataset.info), {}, "--parameters");
-        kept.push_back(static_cast<int>(at - dataset.info.parameters.begin()));
-    }
-    // Parts need their label.
-    for (std::size_t n = 0, stated = kept.size(); n < stated; ++n) {
-        const std::string& label = dataset.info.parameters[std::size_t(kept[n])].parts.label;
-        const bool known = std::any_of(kept.begin(), kept.end(), [&](int index) {
-            return dataset.info.parameters[std::size_t(index)].name == label;
-        });
-        for (std::size_t p = 0; p < dataset.info.parameters.size() && !known; ++p)
-            if (!label.empty() && dataset.info.parameters[p].name == label) kept.push_back(int(p));
-    }
-    std::vector<Parameter> parameters;
-    for (const int index : kept) parameters.push_back(dataset.info.parameters[std::size_t(index)]);
-    dataset.info.parameters = std::move(parameters);
-    dataset.read = dataset.read.through(
-        [kept](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
-            return read(kept[std::size_t(parameter)], component, time, slices);
-        });
-    return dataset;
-}
-
 /// A label stored as floating point in whole numbers.
 Field inWholeNumbers(const Field& field) {
     Field whole = makeField(field.lattice, ScalarType::I32);
@@ -314,6 +285,34 @@ OpenedSeries openSeries(const std::vector<SeriesFile>& entries, const ImportOpti
     return opened;
 }
 
+Dataset withParameters(Dataset dataset, const std::vector<std::string>& wanted) {
+    if (wanted.empty()) return dataset;
+    std::vector<int> kept;
+    for (const std::string& name : wanted) {
+        const auto at = std::find_if(dataset.info.parameters.begin(), dataset.info.parameters.end(),
+                                     [&](const Parameter& parameter) { return parameter.name == name; });
+        if (at == dataset.info.parameters.end()) throw Error(noSuchParameter(name, dataset.info), {}, "--parameters");
+        kept.push_back(static_cast<int>(at - dataset.info.parameters.begin()));
+    }
+    // Parts need their label.
+    for (std::size_t n = 0, stated = kept.size(); n < stated; ++n) {
+        const std::string& label = dataset.info.parameters[std::size_t(kept[n])].parts.label;
+        const bool known = std::any_of(kept.begin(), kept.end(), [&](int index) {
+            return dataset.info.parameters[std::size_t(index)].name == label;
+        });
+        for (std::size_t p = 0; p < dataset.info.parameters.size() && !known; ++p)
+            if (!label.empty() && dataset.info.parameters[p].name == label) kept.push_back(int(p));
+    }
+    std::vector<Parameter> parameters;
+    for (const int index : kept) parameters.push_back(dataset.info.parameters[std::size_t(index)]);
+    dataset.info.parameters = std::move(parameters);
+    dataset.read = dataset.read.through(
+        [kept](const FrameReader& read, int parameter, int component, int time, SliceRange slices) {
+            return read(kept[std::size_t(parameter)], component, time, slices);
+        });
+    return dataset;
+}
+
 double bytesOf(const DatasetInfo& info) {
     double perSample = 0;
     for (const Parameter& parameter : info.parameters)
@@ -321,10 +320,25 @@ double bytesOf(const DatasetInfo& info) {
     return perSample * double(info.lattice.count()) * double(info.times.size());
 }
 
+namespace {
+
+/// openSeries of paths; files that a list names and that are missing are said first.
+OpenedSeries openPaths(const std::vector<std::string>& paths, const ImportOptions& options, bool readSamples,
+                       const Progress& progress, bool meshRanges, Misfits misfits) {
+    if (paths.empty()) throw Error("no file given");
+    std::vector<std::string> missing;
+    const std::vector<SeriesFile> files = expandPaths(paths, outsideBy(options), &missing);
+    OpenedSeries opened = openSeries(files, options, readSamples, progress, meshRanges, misfits);
+    opened.notes.insert(opened.notes.begin(), missing.begin(), missing.end());
+    opened.dataset.info.notes = opened.notes;
+    return opened;
+}
+
+} // namespace
+
 ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOptions& options,
                            const Progress& progress, Misfits misfits) {
-    if (paths.empty()) throw Error("no file given");
-    OpenedSeries opened = openSeries(expandPaths(paths, outsideBy(options)), options, false, progress, false, misfits);
+    OpenedSeries opened = openPaths(paths, options, false, progress, false, misfits);
     ImportPreview preview{opened.format, {}, 0, std::move(opened.notes)};
     preview.bytes = bytesOf(opened.dataset.info);
     preview.info = std::move(opened.dataset.info);
@@ -333,9 +347,7 @@ ImportPreview previewFiles(const std::vector<std::string>& paths, const ImportOp
 
 Dataset openFiles(const std::vector<std::string>& paths, const ImportOptions& options, const Progress& progress,
                   bool meshRanges) {
-    if (paths.empty()) throw Error("no file given");
-    return openSeries(expandPaths(paths, outsideBy(options)), options, true, progress, meshRanges, Misfits::Ignored)
-        .dataset;
+    return openPaths(paths, options, true, progress, meshRanges, Misfits::Ignored).dataset;
 }
 
 void scanRanges(Dataset& dataset, const Progress& progress) {

@@ -19,6 +19,10 @@ struct ImportPreview {
     std::vector<std::string> notes; ///< e.g. "unstructured mesh of 41 000 cells, resampled to 24 x 32 x 88"
 };
 
+/// Keeps only the parameters of these names, all if there is none, and the labels of their parts. Throws Error for
+/// names that there are not.
+Dataset withParameters(Dataset dataset, const std::vector<std::string>& wanted);
+
 /// Bytes of all samples of a data set.
 double bytesOf(const DatasetInfo& info);
 

@@ -39,9 +39,11 @@ void addRenderCommand(CLI::App& app) {
         ->required();
     command->callback([options] {
         const Progress progress = terminalProgress("render");
+        const std::string ending = textEnding(options->output);
+        if (ending == "svg") options->picture.form.format = PictureFormat::Svg;
+        if (ending == "pdf") options->picture.form.format = PictureFormat::Pdf;
         // Report a wrong size or a missing folder before the work starts.
         pictureRequest(options->picture, Session{});
-        const std::string ending = textEnding(options->output);
         if (ending == "csv" && viewsOf(options->picture).size() != 1)
             throw Error("a table is of one view: name it with --view", options->output);
         if (ending != "csv") requirePictureEnding(options->output);

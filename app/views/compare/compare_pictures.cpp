@@ -78,19 +78,21 @@ std::shared_ptr<CompareData> ComparePictures::dataFor(ViewContext& context, cons
                      : data.packed          ? opened->sources.pictures
                                             : opened->sources.numbers;
     if (!data.packed) found->origin = opened->sources.origin;
+    found->packedBytes = opened->sources.origin.packedBytes;
     found->failure = opened->failure;
     found->messages = opened->messages;
     return found;
 }
 
-/// Finds the data of a cell; false while they are opened, or where that failed.
-bool ComparePictures::openCell(ViewContext& context, const std::string& pane, std::size_t index) {
+/// Finds the data of a cell, `alone`: no more than its scene draws; false while they are opened, or where that failed.
+bool ComparePictures::openCell(ViewContext& context, const std::string& pane, std::size_t index, bool alone) {
     CompareCell& cell = *cells_[index];
     if (!cell.failure.empty()) return false;
     if (!(cell.session.data == context.session.data)) {
         cell.failure = whyNot(cell.session.data, context);
         if (!cell.failure.empty()) return false;
-        const auto data = dataFor(context, pane, cell.session.data);
+        const auto data =
+            dataFor(context, pane, alone ? drawnData(cell.session, context.source->info()) : cell.session.data);
         if (data != cell.data) cell.dropPicture();
         cell.data = data;
         if (!data->failure.empty()) {
@@ -116,7 +118,7 @@ void ComparePictures::drawCell(ViewContext& context, const std::string& pane, st
                                bool moving) {
     CompareCell& cell = *cells_[index];
     cell.drawn = false;
-    if (!openCell(context, pane, index)) return;
+    if (!openCell(context, pane, index, true)) return;
     ViewContext own = innerContext(context, cell.session, cell.data ? cell.data->source : context.source,
                                    cell.data ? *cell.data->renderer : context.renderer, context.caches);
     own.renderers = std::max(context.renderers, 1 + renderers());
@@ -251,12 +253,12 @@ void ComparePictures::prepare(const ViewContext& context, const std::vector<Comp
 void ComparePictures::dropUnused() {
     std::erase_if(data_, [&](const auto& data) {
         return std::ranges::none_of(
-            cells_, [&](const auto& cell) { return cell->data == data && data->data == cell->session.data; });
+            cells_, [&](const auto& cell) { return cell->data == data && !(cell->session.data == cell->of.data); });
     });
 }
 
 void ComparePictures::open(ViewContext& context, const std::string& pane, std::size_t reference) {
-    for (std::size_t i = 0; i < cells_.size(); ++i) openCell(context, pane, i);
+    for (std::size_t i = 0; i < cells_.size(); ++i) openCell(context, pane, i, false);
     dropUnused();
     for (std::size_t i = 0; i < cells_.size(); ++i) measureSamples(context, pane, i, reference);
 }
@@ -340,7 +342,8 @@ std::vector<CompareRow> ComparePictures::rows(const ViewContext& context, std::s
         row.milliseconds = cell.status.milliseconds;
         row.samples = double(cell.status.samples);
         row.bytes = double(cell.status.bytes);
-        row.storedBytes = storedBytes(cell.source(context));
+        const double packed = cell.data ? cell.data->packedBytes : context.origin.packedBytes;
+        row.storedBytes = packed > 0 ? packed : storedBytes(cell.source(context));
         const bool known = cell.isMeasured() && reference < cells_.size() &&
                            cell.measured->query.reference == cells_[reference]->image;
         const bool comparable = i != reference && reference < cells_.size() &&

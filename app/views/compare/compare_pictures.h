@@ -29,6 +29,7 @@ struct CompareData {
     /// Of numbers: the samples as computed, of packed data what the archive gives.
     std::shared_ptr<const volume::BrickSource> numbers;
     NumberOrigin origin;
+    double packedBytes = 0; ///< of the archive that they were packed into
     std::unique_ptr<vis::Renderer> renderer;
     std::string failure;
     std::vector<std::string> messages; ///< from opening it, not yet shown
@@ -128,7 +129,7 @@ public:
 
 private:
     std::shared_ptr<CompareData> dataFor(ViewContext& context, const std::string& pane, const DataRef& data);
-    bool openCell(ViewContext& context, const std::string& pane, std::size_t index);
+    bool openCell(ViewContext& context, const std::string& pane, std::size_t index, bool alone);
     void drawCell(ViewContext& context, const std::string& pane, std::size_t index, glm::ivec2 size, bool moving);
     void dropUnused();
     void measure(ViewContext& context, const std::string& pane, std::size_t index, std::size_t reference);

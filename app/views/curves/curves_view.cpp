@@ -180,7 +180,7 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
                                   const PageForm& form,
                                   const Progress&) { return curvesDrawing(*curves, time, form, together); },
                     .table = [curves](const Progress&) { return curvesTable(*curves); },
-                     .brushed = query.brushes.selection.active()},
+                    .brushed = query.brushes.selection.active()},
                    false, curvesOrigin(info, context.origin, query));
     }
 }

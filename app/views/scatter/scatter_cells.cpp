@@ -33,6 +33,8 @@ struct TitleParts {
     std::string whole() const { return rest.empty() ? name : name + " " + rest; }
 };
 
+constexpr float kTwoLines = 2.2f; ///< height of a row whose title stands in two lines beside it, em
+
 TitlePlace placeOf(TitleWay way) {
     return way == TitleWay::Across ? TitlePlace::Elsewhere : TitlePlace::Beside;
 }
@@ -296,7 +298,9 @@ MatrixTitles matrixTitles(const ScatterLayout& matrix, ImVec2 room, double most,
             titles.left = std::max(titles.left, axisRoom(AxisSide::Left, matrix.ranges[i], placeOf(titles.beside)));
         if (titles.beside == TitleWay::TwoLines) titles.left += em();
         if (titles.beside == TitleWay::Across)
-            titles.left += std::min(up.part, mostAcross(room.x, up.rest)) + em() * 0.5f;
+            titles.left += (cellY >= em() * kTwoLines ? std::min(up.part, mostAcross(room.x, up.rest))
+                                                      : std::min(up.whole, mostAcross(room.x, up.rest + em() * 3))) +
+                           em() * 0.5f;
         titles.shown = leavesRoom();
     }
     if (!titles.shown) titles.left = titles.bottom = 0;
@@ -331,7 +335,7 @@ void drawTitleBeside(ImDrawList& draw, const PlotFrame& frame, const TitleParts&
     const float middle = (frame.min.y + frame.max.y) / 2, left = frame.min.x - titles.left;
     if (titles.beside == TitleWay::Across) {
         const float most = titles.left - axisRoom(AxisSide::Left, frame.y, TitlePlace::Elsewhere) - em() * 0.4f;
-        const bool two = !title.rest.empty() && frame.height() >= em() * 2.2f;
+        const bool two = !title.rest.empty() && frame.height() >= em() * kTwoLines;
         float y = middle - em() * (two ? 1.0f : 0.5f);
         for (const std::string& line :
              {two ? title.name : fittedTitle(title, most), two ? title.rest : std::string()}) {

@@ -119,9 +119,12 @@ void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session,
 
 void drawFaceTitle(ImDrawList& draw, const CubeFrame& frame, std::size_t index, const std::string& title,
                    std::vector<std::pair<ImVec2, ImVec2>>& taken) {
-    const ImVec2 size = ImGui::CalcTextSize(title.c_str()), at = faceTitlePlace(frame, index, size, taken);
+    constexpr float kMostTitle = 0.5f; // of the width of the picture: longer ones have no place beside others
+    const std::string shown = fitText(title, (frame.max().x - frame.min.x) * kMostTitle);
+    const ImVec2 size = ImGui::CalcTextSize(shown.c_str()), at = faceTitlePlace(frame, index, size, taken);
     taken.push_back({{at.x - size.x / 2, at.y - size.y / 2}, {at.x + size.x / 2, at.y + size.y / 2}});
-    addTextWithBackdrop(draw, at, {0.5f, 0.5f}, plotColors().text, title.c_str());
+    addTextWithBackdrop(draw, at, {0.5f, 0.5f}, plotColors().text, shown.c_str());
+    tellWhole({at.x - size.x / 2, at.y - size.y / 2}, {at.x + size.x / 2, at.y + size.y / 2}, title, shown);
 }
 
 } // namespace tessera::app

@@ -100,7 +100,7 @@ void drawSliceTitle(SliceRoom& room, const PlanePicture& slice, const volume::Da
     const auto shorter = [&](double fewer) { return name + " " + formatQuantity(at, unit.name, digits * fewer); };
     // The title of the axis at the left stands at the other end of the head line; the unit matters more.
     const auto widthOf = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
-    const float axisTitle = numbered ? widthOf(titleWithUnit(slice.up.name, slice.up.unit.name)) + em() * 0.6f : 0;
+    const float axisTitle = numbered ? widthOf(titleWithUnit(slice.up.title(), slice.up.unit.name)) + em() * 0.6f : 0;
     const float all = beside ? room.axes.max.x - left : room.hi.x - left + 1;
     const float width = beside ? all : std::max(all - axisTitle, std::min(all, widthOf(shorter(100)) + 1));
     const std::string place = firstThatFits(

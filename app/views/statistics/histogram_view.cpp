@@ -222,7 +222,8 @@ void drawHistogramPlot(ViewContext& context, HistogramCache& cache, const Histog
     drawBrushes(draw, context.session.selection, frame, channels);
     drawAxis(draw, frame, AxisSide::Bottom, tall ? channel.name : "", tall ? channel.unit : "", origin.x,
              origin.x + room.x);
-    if (hovered && !cache.drag.active && result && !family) hover(channel, *result, frame, selectionName(context.session));
+    if (hovered && !cache.drag.active && result && !family)
+        hover(channel, *result, frame, selectionName(context.session));
 }
 
 void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channel& channel,

@@ -150,6 +150,21 @@ Table regionTable(const std::vector<RegionRow>& rows, const std::string& lengthU
         if (!rows[i].unit.empty()) parameter.words[i] = titleWithUnit(rows[i].parameter, rows[i].unit);
     add({.name = "unit", .shown = false}, &RegionRow::unit);
     add({.name = "region", .head = "Region"}, &RegionRow::region);
+    // Values come first: in a narrow pane the last columns are out of sight.
+    const auto addValue = [&](const char* name, const char* head, double volume::Summary::*member) {
+        TableColumn& column = add({.name = name, .head = head}, ofSummary(member));
+        for (const RegionRow& row : rows) column.resolutions.push_back((row.range.hi - row.range.lo) / 10000);
+    };
+    addValue("mean", "Mean", &volume::Summary::mean);
+    addValue("deviation", "Std. deviation", &volume::Summary::deviation);
+    addValue("min", "Minimum", &volume::Summary::min);
+    addValue("max", "Maximum", &volume::Summary::max);
+    if (errors) {
+        TableColumn& error =
+            add({.name = "error", .head = "Within \u00b1", .kind = NumberKind::Bound}, &RegionRow::error);
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            if (rows[i].error == 0) error.words[i] = "as computed";
+    }
     add({.name = "samples", .head = "Samples", .kind = NumberKind::Count}, ofSummary(&volume::Summary::samples));
     sayWeighted(table.columns.back());
     if (shares) {
@@ -161,18 +176,6 @@ Table regionTable(const std::vector<RegionRow>& rows, const std::string& lengthU
          .unit = lengthUnit.empty() ? "" : lengthUnit + "3",
          .kind = NumberKind::Volume},
         ofSummary(&volume::Summary::volume));
-    const auto addValue = [&](const char* name, const char* head, double volume::Summary::*member) {
-        TableColumn& column = add({.name = name, .head = head}, ofSummary(member));
-        for (const RegionRow& row : rows) column.resolutions.push_back((row.range.hi - row.range.lo) / 10000);
-    };
-    addValue("mean", "Mean", &volume::Summary::mean);
-    addValue("deviation", "Std. deviation", &volume::Summary::deviation);
-    addValue("min", "Minimum", &volume::Summary::min);
-    addValue("max", "Maximum", &volume::Summary::max);
-    if (!errors) return table;
-    TableColumn& error = add({.name = "error", .head = "Within \u00b1", .kind = NumberKind::Bound}, &RegionRow::error);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        if (rows[i].error == 0) error.words[i] = "as computed";
     return table;
 }
 

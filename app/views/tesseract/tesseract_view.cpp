@@ -97,6 +97,7 @@ void drawToolbar(ViewContext& context, TesseractCache& cache, TesseractView& vie
         drawDescribed(view, WidgetContext{.info = &info});
         ImGui::EndPopup();
     }
+    drawNote(tools, "when and where values occur: what moves leans along " + axisNames(view)[3]);
 }
 
 float slidersHeight(float width) {
@@ -275,19 +276,20 @@ void drawReading(ViewContext& context, const TesseractView& view, const Tesserac
     if (view.fourth.empty()) context.session.time = time;
 }
 
-void drawTexts(ViewContext& context, const TesseractView& view, const TesseractFrame& frame, ImVec2 max, int channel) {
+void drawTexts(ViewContext& context, const TesseractView& view, const TesseractFrame& frame, ImVec2 max, int channel,
+               std::vector<std::pair<ImVec2, ImVec2>> taken) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
     const PlotColors colors = plotColors();
-    if (context.decoration.axes) drawAxisNames4(draw, frame);
     std::string title = nearText(frame);
     if (const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes); !uneven.empty())
         title += "; " + uneven;
     if (context.decoration.title) // above the legends: at the left it would lie over the body
         addFittedWithBackdrop(draw, {max.x - em() * 0.5f, frame.min.y + em() * 0.4f}, {1, 0}, colors.faint, title,
                               max.x - frame.min.x - em());
-    if (!view.showLegend || !context.decoration.legend) return;
+    if (!view.showLegend || !context.decoration.legend)
+        return context.decoration.axes ? drawAxisNames4(draw, frame, std::move(taken)) : void();
     const std::optional<int> fourth = fourthChannel(info, view);
     std::vector<LegendEntry> entries;
     LegendEntry along;
@@ -308,8 +310,10 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     if (view.colorBy == TesseractColor::Value) entries.push_back(legendOf(session, info, channel));
     // The edges reach everywhere as it turns: the legends stay where they are.
     const LegendRoom room{frame.min, max};
-    const auto nothing = [](ImVec2, ImVec2) { return 0.0; };
-    drawLegends(draw, entries, room, placeLegends(entries, room, {nothing}, figureLegends(context)));
+    const LegendArea area = drawLegends(
+        draw, entries, room, placeLegends(entries, room, {[](ImVec2, ImVec2) { return 0.0; }}, figureLegends(context)));
+    taken.emplace_back(area.min, area.max);
+    if (context.decoration.axes) drawAxisNames4(draw, frame, std::move(taken));
 }
 
 } // namespace
@@ -344,11 +348,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
         context.answers.busy = moving = true;
     }
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    if (!updateCloud(context, pane, cache, view, *channel)) {
-        const std::string failure = cache.answers.failure();
-        addTextWithBackdrop(draw, {(min.x + max.x) / 2, (min.y + max.y) / 2}, {0.5f, 0.5f}, plotColors().faint,
-                            failure.empty() ? "reading samples..." : failure.c_str());
-    }
+    const bool there = updateCloud(context, pane, cache, view, *channel);
 
     TesseractFrame frame;
     frame.min = min;
@@ -359,6 +359,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     frame.projection = {static_cast<double>(view.eye), 3, static_cast<double>(view.zoom)};
     frame.half = halfOf(view, info.bounds, context.session.stretch);
     frame.axes = axisNames(view);
+    numberEnds(frame, info, fourthChannel(info, view));
     frame.fourth = fourthColors();
 
     const ImVec4 ground = ImGui::ColorConvertU32ToFloat4(palette().plot);
@@ -381,13 +382,18 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
     addPicture(draw, cache.texture, frame.min, frame.max);
     drawLattice4(draw, frame, view.lattice);
     if (view.showWire && context.decoration.box) drawWire(draw, frame);
-    const bool time = !fourthChannel(info, view);
-    if (view.showNow && context.decoration.cursor && time && info.times.size() > 1) {
-        const double first = info.times.front(), last = info.times.back();
-        const std::string text = timeText(info, context.session.time);
-        drawNowCell(draw, frame, std::clamp((context.session.time - first) / (last - first), 0.0, 1.0), text);
+    std::vector<std::pair<ImVec2, ImVec2>> taken; // by texts
+    if (view.showNow && context.decoration.cursor && !fourthChannel(info, view) && info.times.size() > 1) {
+        const double first = info.times.front(), now = context.session.time - first;
+        const double share = std::clamp(now / (info.times.back() - first), 0.0, 1.0);
+        taken.push_back(drawNowCell(draw, frame, share, timeText(info, context.session.time)));
     }
-    drawTexts(context, view, frame, max, *channel);
+    drawTexts(context, view, frame, max, *channel, std::move(taken));
+    if (!there) { // over the picture, which is empty until then
+        const std::string failure = cache.answers.failure();
+        addTextWithBackdrop(draw, {(min.x + max.x) / 2, (min.y + max.y) / 2}, {0.5f, 0.5f}, plotColors().text,
+                            failure.empty() ? "Reading the samples of all times..." : failure.c_str());
+    }
     if (hovered) drawReading(context, view, cache, frame, *channel);
     draw.PopClipRect();
     if (below > 0) drawSliders(view, cache, frame.rotation, room.x);

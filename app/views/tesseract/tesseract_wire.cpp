@@ -1,9 +1,11 @@
 #include "app/views/tesseract/tesseract_wire.h"
 
 #include "app/pane/axes3d.h"
+#include "app/ui/ticks.h"
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <vector>
 
 namespace tessera::app {
@@ -101,7 +103,8 @@ void drawLattice4(ImDrawList& draw, const TesseractFrame& frame, int cells) {
     drawPieces(draw, pieces);
 }
 
-void drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share, const std::string& text) {
+std::pair<ImVec2, ImVec2> drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share,
+                                      const std::string& text) {
     const double w = frame.half.w * (2 * share - 1);
     const PlotColors colors = plotColors();
     ImVec2 top{0, 0};
@@ -119,10 +122,28 @@ void drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share, co
                 first = false;
             }
     }
-    if (!text.empty()) addTextWithBackdrop(draw, {top.x, top.y - em() * 0.3f}, {0.5f, 1}, colors.cursor, text.c_str());
+    const float below = frame.min.y + em() * 3; // of the title of the picture
+    const ImVec2 at{top.x, std::max(top.y - em() * 0.3f, below)}, size = ImGui::CalcTextSize(text.c_str());
+    addTextWithBackdrop(draw, at, {0.5f, 1}, colors.cursor, text.c_str());
+    return {{at.x - size.x / 2, at.y - size.y}, {at.x + size.x / 2, at.y}};
 }
 
-void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame) {
+void numberEnds(TesseractFrame& frame, const volume::DatasetInfo& info, std::optional<int> fourth) {
+    const LengthUnit unit = suitableLength(info.lengthUnit, glm::length(info.bounds.size()));
+    const auto put = [&](std::size_t axis, Range range, const std::string& of) {
+        const double digits = (range.hi - range.lo) / 100;
+        frame.low[axis] = formatQuantity(range.lo, of, digits);
+        frame.high[axis] = formatQuantity(range.hi, of, digits);
+    };
+    for (int axis = 0; axis < 3; ++axis)
+        put(std::size_t(axis), {info.bounds.lo[axis] * unit.perUnit, info.bounds.hi[axis] * unit.perUnit}, unit.name);
+    if (fourth)
+        put(3, info.channelRange(info.channel(*fourth)), info.channel(*fourth).unit);
+    else
+        put(3, {info.times.front(), info.times.back()}, info.timeUnit);
+}
+
+void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame, std::vector<std::pair<ImVec2, ImVec2>> taken) {
     // The four edges of the corner that lies furthest down have their names where they cross nothing else.
     int corner = 0;
     double lowest = 0;
@@ -134,12 +155,27 @@ void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame) {
         }
     }
     const glm::dvec4 from = vis::corner4(corner, frame.half);
+    const auto write = [&](glm::dvec4 place, ImU32 color, const std::string& text) {
+        const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+        const ImVec2 on = frame.pixel(frame.project(place).at);
+        const ImVec2 at{std::clamp(on.x, frame.min.x + size.x / 2, std::max(frame.min.x, frame.max.x) - size.x / 2),
+                        std::clamp(on.y, frame.min.y + size.y / 2, frame.max.y - size.y / 2)};
+        const ImVec2 lo{at.x - size.x / 2, at.y - size.y / 2}, hi{at.x + size.x / 2, at.y + size.y / 2};
+        for (const auto& [min, max] : taken)
+            if (lo.x < max.x && min.x < hi.x && lo.y < max.y && min.y < hi.y) return;
+        taken.emplace_back(lo, hi);
+        addTextWithBackdrop(draw, at, {0.5f, 0.5f}, color, text.c_str());
+    };
+    std::string here;
     for (int axis = 0; axis < 4; ++axis) {
         const glm::dvec4 to = vis::corner4(corner ^ 1 << axis, frame.half);
-        const ImVec2 at = frame.pixel(frame.project(from + (to - from) * 0.6).at);
         const ImU32 color = axis < 3 ? axisColor(axis) : fourthColor(frame, 0.75, 1);
-        addTextWithBackdrop(draw, at, {0.5f, 0.5f}, color, frame.axes[std::size_t(axis)].c_str());
+        write(from + (to - from) * 0.6, color, frame.axes[std::size_t(axis)]);
+        const bool high = to[axis] > 0;
+        write(to, color, (high ? frame.high : frame.low)[std::size_t(axis)]);
+        here += (axis == 0 ? "" : axis < 3 ? ", " : "; ") + (high ? frame.low : frame.high)[std::size_t(axis)];
     }
+    write(from, plotColors().faint, here);
 }
 
 std::string nearText(const TesseractFrame& frame) {

@@ -19,6 +19,7 @@
 #include "app/ui/widgets.h"
 #include "app/views/volume/link_control.h"
 #include "app/views/volume/space_beside.h"
+#include "app/views/volume/upper_texts.h"
 #include "volume/import/files/upright.h"
 
 #include <algorithm>
@@ -170,6 +171,8 @@ public:
     }
 
 private:
+    static constexpr float kUpperLine = 1.3f; ///< em
+
     ImVec2 max() const { return picture_.max(); }
     /// Whether box and cross-hair suit what is shown.
     bool framed() const { return view_.drawingBox || !onlyDrawings(session_); }
@@ -226,7 +229,10 @@ private:
         }
     }
 
-    LegendRoom legendRoom() const { return {picture_.min, max(), em() * 1.8f}; }
+    LegendRoom legendRoom() const {
+        const float lines = shown_.title ? static_cast<float>(std::max<std::size_t>(1, upperTexts().left.size())) : 1;
+        return {picture_.min, max(), em() * (0.5f + kUpperLine * lines)};
+    }
 
     /// Legends and gizmo go where the box is not, nor the numbers beside it, shown or left out of this picture.
     void placeCorners(const SpaceFrame& space) {
@@ -296,21 +302,29 @@ private:
             taken_.push_back(drawScaleBar(*list_, {left, max().y - em() * 0.5f}, bar));
     }
 
-    /// Writes the stretch of the data, that axes are not shown as they lie, and the time shown in exported pictures and
-    /// where it is the view's own.
-    void drawTexts() {
-        std::string text = stretchText(session_.stretch, info_.lattice.axes);
+    /// The stretch of the data, that axes are not shown as they lie, and the time shown in exported pictures and where
+    /// it is the view's own: the window has its timeline, but not where time runs along an axis.
+    UpperTexts upperTexts() const {
+        std::string stretch = stretchText(session_.stretch, info_.lattice.axes), state;
         if (volume::isStraightened(info_.notes))
-            text += (text.empty() ? "" : ", ") + std::string("oblique axes, shown straight");
-        if (!text.empty()) {
-            const ImVec2 at{chain_.left() - em() * 0.5f, picture_.min.y + em() * 0.4f},
-                size = ImGui::CalcTextSize(text.c_str());
-            addTextWithBackdrop(*list_, at, {1, 0}, plotColors().faint, text.c_str());
-            taken_.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
-        }
-        // The window has its timeline, but not where time runs along an axis.
+            stretch += (stretch.empty() ? "" : ", ") + std::string("oblique axes, shown straight");
         if ((!context_.takesInput() || session_.data.timeAxis || view_.time) && info_.times.size() > 1)
-            drawUpperLeft(stateText(info_, session_.time, session_.data.axis), plotColors().text);
+            state = stateText(info_, session_.time, session_.data.axis);
+        return upperTextsOf(state, stretch, chain_.left() - picture_.min.x - em());
+    }
+    void drawTexts() {
+        const UpperTexts texts = upperTexts();
+        const auto write = [&](ImVec2 at, float pivot, ImU32 color, const std::string& text) {
+            if (text.empty()) return;
+            const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+            addTextWithBackdrop(*list_, at, {pivot, 0}, color, text.c_str());
+            taken_.push_back({{at.x - pivot * size.x, at.y}, {at.x + (1 - pivot) * size.x, at.y + size.y}});
+        };
+        const PlotColors colors = plotColors();
+        write({chain_.left() - em() * 0.5f, picture_.min.y + em() * 0.4f}, 1, colors.faint, texts.right);
+        for (std::size_t i = 0; i < texts.left.size(); ++i)
+            write({picture_.min.x + em() * 0.5f, picture_.min.y + em() * (0.4f + kUpperLine * float(i))}, 0,
+                  i < texts.faintFrom ? colors.text : colors.faint, texts.left[i]);
     }
 
     void drawProgress(const vis::FrameStatus& status) {

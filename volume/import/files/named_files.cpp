@@ -137,7 +137,8 @@ std::vector<fs::path> namedDirectly(const fs::path& path) {
         const fs::path folder = fs::absolute(path).parent_path();
         addCase(path.filename().string().starts_with("controlDict") ? folder.parent_path() : folder);
     } else if (fs::is_directory(path, problem) || kind == ".pvd" || kind == ".series" || !fs::exists(path, problem)) {
-        for (const SeriesFile& file : expandPaths({path.string()}, Outside::Allowed)) {
+        std::vector<std::string> missing;
+        for (const SeriesFile& file : expandPaths({path.string()}, Outside::Allowed, &missing)) {
             named.emplace_back(file.path);
             named.insert(named.end(), file.slices.begin(), file.slices.end());
         }

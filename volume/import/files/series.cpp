@@ -1,6 +1,7 @@
 #include "volume/import/files/series.h"
 
 #include "volume/base/error.h"
+#include "volume/base/number_text.h"
 #include "volume/import/files/file_names.h"
 #include "volume/import/files/formats.h"
 #include "volume/system/input_file.h"
@@ -96,6 +97,32 @@ std::vector<std::pair<std::string, double>> furtherNumbers(std::string_view tag)
             numbers.emplace_back(name, value);
     }
     return numbers;
+}
+
+/// The files of a list that exist; the others are said in `missing`. Throws Error for others without it, where there
+/// are only others, and for what is no file.
+std::vector<SeriesFile> existing(std::vector<SeriesFile> listed, const std::string& list,
+                                 std::vector<std::string>* missing) {
+    std::vector<SeriesFile> kept;
+    std::string first;
+    std::vector<std::string> lost;
+    for (SeriesFile& entry : listed) {
+        std::error_code ignored;
+        const std::string why = whyNoFile(entry.path);
+        if (why.empty() || fs::is_directory(entry.path, ignored)) {
+            kept.push_back(std::move(entry));
+            continue;
+        }
+        const bool absent = why == kNoSuchFile;
+        const std::string said = "lists " + entry.path + ", which " + (absent ? "does not exist" : why);
+        if (!absent || !missing) throw Error(said, list);
+        if (first.empty()) first = said;
+        lost.push_back(fs::path(list).filename().string() + " " + said +
+                       (entry.time ? ": time " + exactText(*entry.time) + " is left out" : ": it is left out"));
+    }
+    if (kept.empty()) throw Error(first, list);
+    if (missing) missing->insert(missing->end(), lost.begin(), lost.end());
+    return kept;
 }
 
 /// Files with a single page are slices; they become one entry per volume: pictures by numbers in names, DICOM by
@@ -247,7 +274,8 @@ std::vector<SeriesFile> parseSeries(const std::string& text, const std::string& 
     return files;
 }
 
-std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths, Outside outside) {
+std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths, Outside outside,
+                                    std::vector<std::string>* missing) {
     std::vector<SeriesFile> files;
     std::vector<std::string> pending(paths.rbegin(), paths.rend());
     std::set<std::string> seen; // ignore duplicate paths
@@ -284,14 +312,9 @@ std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths, Outsi
         requireFile(path);
         const std::string kind = ending(path);
         if (kind == ".pvd" || kind == ".series") {
-            std::vector<SeriesFile> listed =
-                kind == ".pvd" ? parsePvd(readText(path), path, outside) : parseSeries(readText(path), path, outside);
-            for (SeriesFile& entry : listed)
-                if (const std::string why = whyNoFile(entry.path);
-                    !why.empty() && !fs::is_directory(entry.path, ignored))
-                    throw Error("lists " + entry.path + ", which " +
-                                    (why == kNoSuchFile ? std::string("does not exist") : why),
-                                path);
+            const std::vector<SeriesFile> listed = existing(kind == ".pvd" ? parsePvd(readText(path), path, outside)
+                                                                           : parseSeries(readText(path), path, outside),
+                                                            path, missing);
             files.insert(files.end(), listed.begin(), listed.end());
             continue;
         }

@@ -32,8 +32,11 @@ struct SeriesFile {
 /// Expands the paths given by the user: a directory (of Zarr, an OpenFOAM case, its single .pvd or .series, or its
 /// files of the most frequent known suffix), a pattern with * or ?, a ParaView .pvd or .series file, or files. Groups
 /// keep the order of their first file; files of a group are sorted by time, then number. Duplicate paths are ignored.
-/// Throws Error for paths that do not exist or cannot be read, and for lists of files elsewhere if that is refused.
-std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths, Outside outside = Outside::Refused);
+/// Files that a list names and that do not exist are left out and said in `missing`, a sentence each; without it, and
+/// where the list has no other, they are an Error. Throws Error for paths that do not exist or cannot be read, and for
+/// lists of files elsewhere if that is refused.
+std::vector<SeriesFile> expandPaths(const std::vector<std::string>& paths, Outside outside = Outside::Refused,
+                                    std::vector<std::string>* missing = nullptr);
 
 /// The files that a pattern with * or ? fits, in alphabetical order; empty if there is none.
 std::vector<std::string> filesOfPattern(const std::string& pattern);

@@ -1,0 +1,28 @@
+#include "app/views/volume/upper_texts.h"
+
+#include "app/pane/plot.h"
+#include "app/ui/fitted_text.h"
+#include "app/ui/widgets.h"
+
+#include <sstream>
+
+namespace tessera::app {
+
+UpperTexts upperTextsOf(const std::string& state, const std::string& stretch, float room) {
+    UpperTexts out;
+    const auto widthOf = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+    const auto add = [&](const std::string& text) {
+        std::istringstream lines(wrappedAtSpaces(text, room));
+        for (std::string line; std::getline(lines, line);) out.left.push_back(fitText(line, room));
+    };
+    add(state);
+    out.faintFrom = out.left.size();
+    const float taken = out.left.empty() ? 0 : widthOf(out.left.front()) + em() * 1.5f;
+    if (out.left.size() > 1 || taken + widthOf(stretch) > room)
+        add(stretch);
+    else
+        out.right = stretch;
+    return out;
+}
+
+} // namespace tessera::app
