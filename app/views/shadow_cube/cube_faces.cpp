@@ -4,6 +4,8 @@
 #include "app/tools/brush_edit.h"
 #include "app/tools/brush_list.h"
 
+#include <algorithm>
+
 namespace tessera::app {
 
 namespace {
@@ -119,12 +121,19 @@ void drawMarks(ImDrawList& draw, const CubeFrame& frame, const Session& session,
 
 void drawFaceTitle(ImDrawList& draw, const CubeFrame& frame, std::size_t index, const std::string& title,
                    std::vector<std::pair<ImVec2, ImVec2>>& taken) {
-    constexpr float kMostTitle = 0.5f; // of the width of the picture: longer ones have no place beside others
-    const std::string shown = fitText(title, (frame.max().x - frame.min.x) * kMostTitle);
-    const ImVec2 size = ImGui::CalcTextSize(shown.c_str()), at = faceTitlePlace(frame, index, size, taken);
-    taken.push_back({{at.x - size.x / 2, at.y - size.y / 2}, {at.x + size.x / 2, at.y + size.y / 2}});
-    addTextWithBackdrop(draw, at, {0.5f, 0.5f}, plotColors().text, shown.c_str());
-    tellWhole({at.x - size.x / 2, at.y - size.y / 2}, {at.x + size.x / 2, at.y + size.y / 2}, title, shown);
+    for (const float share : {0.5f, 0.33f, 0.2f}) { // of the width of the picture: shorter where others are in the way
+        const std::string shown = fitText(title, (frame.max().x - frame.min.x) * share);
+        const ImVec2 size = ImGui::CalcTextSize(shown.c_str()), at = faceTitlePlace(frame, index, size, taken);
+        const ImVec2 lo{at.x - size.x / 2, at.y - size.y / 2}, hi{at.x + size.x / 2, at.y + size.y / 2};
+        const bool free = std::ranges::none_of(taken, [&](const auto& each) {
+            return lo.x < each.second.x && each.first.x < hi.x && lo.y < each.second.y && each.first.y < hi.y;
+        });
+        if (!free) continue;
+        taken.emplace_back(lo, hi);
+        addTextWithBackdrop(draw, at, {0.5f, 0.5f}, plotColors().text, shown.c_str());
+        return tellWhole(lo, hi, title, shown);
+    }
+    taken.emplace_back(frame.min, frame.min); // no place at all
 }
 
 } // namespace tessera::app
