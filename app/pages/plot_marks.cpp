@@ -153,7 +153,7 @@ private:
                   plot_.y.ink);
     }
     void rightOf(const PlotAxis& axis) {
-        const TickLabels ticks = pageTicks(axis, y0_ - y1_, true, text_);
+        const TickLabels ticks = pageTicks(axis, y0_ - y1_, true, form_);
         double free = HUGE_VAL;
         for (std::size_t i = 0; i < ticks.values.size(); ++i) {
             const double y = share(axis.range, ticks.values[i], y0_, y1_);

@@ -259,10 +259,14 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                      return plotPage({plot}, 1, form);
                  },
              .table =
-                 [result, family, channel, info = context.numbers->info()](const Progress&) {
+                 [result, family, channel, info = context.numbers->info(),
+                  selected = result->brushed ? selectionName(context.session) : std::string()](const Progress&) {
                      if (family) return familyTable(info, channel, *family);
-                     return histogramTable(channel, result->statistics.channels.front().histogram, result->brushed);
-                 }});
+                     Table table = histogramTable(channel, result->statistics.channels.front().histogram, selected);
+                     if (!selected.empty()) sayWeighted(table.columns.back());
+                     return table;
+                 },
+             .brushed = result->brushed});
     }
     if (result) drawOrigin(context, tools, {result->query.channels.front()}, !family);
     if (context.session.selection.brushes.empty()) drawNote(tools, "drag to brush");
