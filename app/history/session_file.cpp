@@ -115,6 +115,13 @@ void keepEvenCell(Json& document) {
     if (const auto other = data->find("other"); other != data->end() && other->is_object()) keepEvenCellOf(*other);
 }
 
+/// Up to schema 4 brushed samples that a transfer function hides stayed hidden.
+void keepHiddenFocus(Json& document) {
+    const auto selection = document.find("selection");
+    if (selection != document.end() && selection->is_object() && !selection->contains("focusOpacity"))
+        (*selection)["focusOpacity"] = 0;
+}
+
 } // namespace
 
 void migrate(Json& document, const std::string& file) {
@@ -133,7 +140,10 @@ void migrate(Json& document, const std::string& file) {
                     file, "/schema");
     if (schema < 3) migrateLattice(document);
     if (schema < 4) keepEvenGrid(document);
-    if (schema < 5) keepEvenCell(document);
+    if (schema < 5) {
+        keepEvenCell(document);
+        keepHiddenFocus(document);
+    }
     document["schema"] = kSessionSchema;
 }
 

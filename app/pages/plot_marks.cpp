@@ -338,7 +338,7 @@ double keyRoom(const Plot& plot, const PageForm& form) {
     if (plot.right && form.axes) {
         double widest = 0;
         for (const int most : {3, 5, 8, 12})
-            for (const std::string& text : tickLabels(plot.right->range, most).texts)
+            for (const std::string& text : styledTickLabels(plot.right->range, most, true, form.figure.ticks).texts)
                 widest = std::max(widest, pageTextWidth(text, form.text));
         return widest + (6 + kRampText) * scale + 1.6 * form.text;
     }

@@ -277,8 +277,10 @@ SeriesLists placeLists(const std::vector<Plot>& plots, const PlotGrid& grid, con
 /// The same with the captions that the user gave their axes.
 std::vector<Plot> captioned(std::vector<Plot> plots, const FigureSettings& settings) {
     if (settings.captions.empty()) return plots;
-    for (Plot& plot : plots)
+    for (Plot& plot : plots) {
         for (PlotAxis* const axis : {&plot.x, &plot.y}) axis->title = captionOf(settings, axis->title);
+        if (plot.right) plot.right->title = captionOf(settings, plot.right->title);
+    }
     return plots;
 }
 

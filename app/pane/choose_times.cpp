@@ -23,6 +23,18 @@ std::vector<volume::TimePair> chosenTimes(const volume::DatasetInfo& info, const
     return out;
 }
 
+std::string chosenTimesText(const volume::DatasetInfo& info, const std::vector<double>& chosen, double shown) {
+    if (chosen.empty()) return {};
+    std::vector<double> times;
+    for (const volume::TimePair& pair : chosenTimes(info, chosen, shown))
+        times.push_back(volume::timeAt(info.times, pair));
+    const std::vector<std::string> names = stateNames(info, times);
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i == 0 ? ", at " : i + 1 == names.size() ? " and " : "; ") + names[i];
+    return text;
+}
+
 void chooseTimes(ToolRow& tools, const volume::DatasetInfo& info, std::vector<double>& times, const Session& session) {
     const float width = em() * 8.5f;
     if (info.times.size() < 2 || !tools.next(width)) return;

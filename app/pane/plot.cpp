@@ -205,7 +205,7 @@ void drawRightAxis(ImDrawList& draw, const PlotFrame& frame, std::string_view ti
     for (std::size_t i = 0; i < ticks.values.size(); ++i) {
         const float at = std::round(frame.pixel(frame.x.hi, ticks.values[i]).y) + 0.5f, half = em() / 2;
         draw.AddLine({frame.max.x, at}, {frame.max.x + tickLength(), at}, plotColors().frame);
-        const float top = std::clamp(at - half, frame.min.y - em() * 0.3f, frame.max.y - em() * 0.7f);
+        const float top = std::max(frame.min.y - em() * 0.3f, std::min(at - half, frame.max.y - em() * 0.7f));
         draw.AddText({std::round(frame.max.x + tickLength() + em() * 0.15f), std::round(top)}, color,
                      ticks.texts[i].c_str());
     }

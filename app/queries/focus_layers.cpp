@@ -3,6 +3,7 @@
 #include "volume/flow/flow_channels.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tessera::app {
 
@@ -25,12 +26,14 @@ Range brushedPlaces(const vis::Selection& selection, const std::string& channel,
     return places;
 }
 
-/// Whether a function hides some of these values.
-bool hides(const vis::TransferFunction& function, Range places, double least) {
+/// Whether a volume of this density hides some of these values of a function.
+bool hides(const vis::TransferFunction& function, double density, Range places, double least) {
     if (function.kind == vis::TransferKind::Regions) return true;
     constexpr int kSteps = 64;
-    for (int i = 0; i <= kSteps; ++i)
-        if (vis::evaluate(function, {0, 1}, places.lo + (places.hi - places.lo) * i / kSteps).a < least) return true;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double opacity = vis::evaluate(function, {0, 1}, places.lo + (places.hi - places.lo) * i / kSteps).a;
+        if (1 - std::pow(1 - opacity, density) < least) return true;
+    }
     return false;
 }
 
@@ -43,12 +46,13 @@ void addBrushedVolume(vis::Scene& scene, const volume::DatasetInfo& info, const 
     vis::TransferFunction function = vis::transferFor(scene, name);
     const Range range = vis::effectiveRange(function, info.channelRange(info.channel(*channel)));
     const double least = double(scene.selection.focusOpacity);
-    if (!hides(function, brushedPlaces(scene.selection, volume.channel, range), least)) return;
+    if (!hides(function, double(volume.density), brushedPlaces(scene.selection, volume.channel, range), least)) return;
     function.kind = vis::TransferKind::Curve;
     function.opacity = {{0, scene.selection.focusOpacity}, {1, scene.selection.focusOpacity}};
     std::string own = name + " brushed";
     while (scene.transfer.contains(own)) own += "'";
     scene.transfer[own] = function;
+    volume.density = 1; // the opacity of the focus is that of the selection
     vis::Layer focus = of;
     focus.name = own;
     focus.technique = std::move(volume);

@@ -26,7 +26,7 @@ constexpr EffectWords kEffects[] = {
     {"enhance", "What is inside becomes more opaque"},
     {"suppress", "What is inside becomes faint and grey"},
     {"magnify", "The centre is magnified, as by a fisheye lens"},
-    {"brushes", "Brushes act inside only; outside, everything is in focus"},
+    {"brushes", "Brushes act inside only; outside, nothing fades"},
 };
 static_assert(std::size(kEffects) == std::size(vis::kLensEffectNames));
 

@@ -102,11 +102,13 @@ std::vector<std::size_t> enabledBrushes(const vis::Selection& selection) {
     return out;
 }
 
+std::string brushName(const vis::Selection& selection, std::size_t i) {
+    const std::string& name = selection.brushes[i].name;
+    return name.empty() ? "brush " + std::to_string(i + 1) : name;
+}
+
 std::string combinedNames(const vis::Selection& selection) {
-    return combinedBrushes(selection, [&](std::size_t i) {
-        const std::string& name = selection.brushes[i].name;
-        return name.empty() ? "brush " + std::to_string(i + 1) : name;
-    });
+    return combinedBrushes(selection, [&](std::size_t i) { return brushName(selection, i); });
 }
 
 } // namespace
@@ -176,8 +178,7 @@ std::vector<std::string> selectionNotes(const Session& session, const volume::Da
     }
     std::vector<std::string> notes{"selection \"" + name + "\"" +
                                    (selection.name.empty() ? "" : ": " + combinedNames(selection))};
-    for (const std::size_t i : enabled)
-        notes.push_back("brush \"" + selection.brushes[i].name + "\": " + definition(i));
+    for (const std::size_t i : enabled) notes.push_back("brush \"" + brushName(selection, i) + "\": " + definition(i));
     return notes;
 }
 

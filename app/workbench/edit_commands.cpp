@@ -91,7 +91,7 @@ std::vector<Command> brushCommands(Workbench& workbench) {
     };
     return {{.menu = "Edit",
              .name = "-Clear brushes",
-             .help = "Remove all brushes, so that everything is in focus",
+             .help = "Remove all brushes, so that nothing is selected",
              .words = "remove delete reset selection deselect",
              .shortcut = {.key = key::kEscape},
              .run =

@@ -46,7 +46,7 @@ const std::map<std::string, Input> kSessionParts = {
     {"transfer", kTransfer},    {"layers", kLayers},     {"render", kRender}, {"lighting", kLighting},
     {"clips", kClips},          {"lenses", kLenses},     {"tone", kTone},     {"paper", kPaper},
     {"animation", kInputs},     {"appearance", kInputs}, {"views", kInputs},  {"dock", kInputs},
-    {"layoutBrushes", kInputs}, {"probes", kProbes}};
+    {"layoutBrushes", kInputs}, {"probes", kProbes},     {"figure", kInputs}};
 
 /// By kind of view: F where what it shows follows the input, a dot where it must stay as it is. Of views that can be
 /// exported that is the table, of the others and of slices the picture.

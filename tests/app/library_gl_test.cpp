@@ -1,5 +1,6 @@
 #include "app/data/library.h"
 #include "app/pane/view_parts.h"
+#include "app/session/own_functions.h"
 #include "app/user_files/own_functions.h"
 #include "app/views/transfer/library_page.h"
 #include "tests/app/formula_cell.h"

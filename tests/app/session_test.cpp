@@ -165,6 +165,13 @@ TEST_F(SessionFileTest, TheFuelCellOfEarlierSessionsIsTheEvenOne) {
     EXPECT_EQ(other->settings, (Settings{{"even", 1}}));
 }
 
+TEST_F(SessionFileTest, BrushesOfEarlierSessionsLeaveTheirPicturesAsTheyWere) {
+    const auto least = [](const std::string& text) { return parseSession(text, "x").session.selection.focusOpacity; };
+    EXPECT_EQ(least(R"({"schema": 4, "selection": {"contextOpacity": 0.1}})"), 0);
+    EXPECT_EQ(least(R"({"schema": 5, "selection": {"contextOpacity": 0.1}})"), vis::Selection().focusOpacity);
+    EXPECT_EQ(least(R"({"schema": 4})"), vis::Selection().focusOpacity) << "brushes to come";
+}
+
 TEST_F(SessionFileTest, LayersOfALensThatIsMissingAreHidden) {
     volume::DatasetInfo info;
     info.bounds = {glm::dvec3(0), glm::dvec3(1)};

@@ -111,13 +111,14 @@ TEST_F(StatesOfACell, ASelectionStandsBesideEverything) {
     SectionCurvesQuery brushed = across(1);
     brushed.label = -1;
     brushed.selection.brushes = {vis::rangeBrush({{"region", 0.75, 1.25, 0}})};
+    brushed.selection.name = "west";
     SectionCurvesQuery all = brushed;
     all.selection = {};
     const std::vector<SectionCurves> states{readSections(source, brushed), readSections(source, all)};
     const std::vector<Plot> panels = sectionPanels(info, states, SectionMeasure::Mean);
     ASSERT_EQ(panels.size(), 2u);
     ASSERT_EQ(panels[0].series.size(), 2u);
-    EXPECT_EQ(panels[0].series[0].name, "selection");
+    EXPECT_EQ(panels[0].series[0].name, "west");
     EXPECT_EQ(panels[0].series[1].name, "everything");
     EXPECT_NEAR(panels[0].series[0].points[3].y, mean("T", 3, 1, formula::kWest), 1e-4);
     EXPECT_NE(panels[0].series[0].points[3].y, panels[0].series[1].points[3].y);

@@ -4,6 +4,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "app/values/selection_text.h"
 #include "app/views/curves/curves_data.h"
 #include "volume/base/error.h"
 
@@ -148,9 +149,10 @@ void drawToolbar(ViewContext& context, CurvesCache& cache, const std::shared_ptr
     if (tools.next(em() * 6.5f)) chooseCurves(info, resolved, view, cache.draft);
     if (tools.next(em() * 9)) chooseAcross(info, resolved, view);
     chooseRegion(tools, info, query, view);
-    if (context.session.selection.active() && tools.next(em() * 6)) {
-        ImGui::Checkbox("selected", &view.brushed);
-        if (ImGui::IsItemHovered()) tooltip("Compute statistics of the selection");
+    const std::string selected = "in " + selectionName(context.session);
+    if (context.session.selection.active() && tools.next(std::min(checkboxWidth(selected.c_str()), em() * 12))) {
+        ImGui::Checkbox((selected + "##brushed").c_str(), &view.brushed);
+        if (ImGui::IsItemHovered()) tooltip("Statistics of the samples selected, instead of all");
     }
     if (curves && curveGroups(*curves).size() == 2 && tools.next(checkboxWidth("one plot"))) {
         ImGui::Checkbox("one plot", &view.together);

@@ -65,6 +65,9 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
                        !view.points.empty()))
             view.points.clear();
     }
+    const bool ofTimes = view.over == ProfileOver::Line && !view.times.empty(),
+               atShown = view.over == ProfileOver::Line && !ofTimes;
+    const std::string times = ofTimes ? chosenTimesText(info, view.times, session.time) : std::string();
     if (profile) {
         exportMenu(
             context, tools,
@@ -72,9 +75,10 @@ void drawToolbar(ViewContext& context, const std::shared_ptr<const Profile>& pro
              .figure = [info, profile,
                         session](const PageForm& form,
                                  const Progress&) { return profileDrawing(info, session, *profile, form); },
-             .table = [info, profile, session](const Progress&) { return profileTable(info, session, *profile); }});
+             .table = [info, profile, session](const Progress&) { return profileTable(info, session, *profile); }},
+            atShown, times.empty() ? std::string() : originText(context) + times);
     }
-    drawOrigin(context, tools, shown, view.over == ProfileOver::Line && view.times.empty());
+    drawOriginText(context, tools, originText(context, shown) + times, atShown);
     if (view.points.size() == 1 && view.over != ProfileOver::Time) drawNote(tools, "one more corner needed");
 }
 

@@ -174,11 +174,13 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
     if (view.sections.measure == SectionMeasure::Mean)
         choose(tools, "##weight", view.sections.weight, kWeights, kWeightHelp, 7);
     if (const auto label = volume::labelChannel(info)) chooseRegions(tools, info, *label, view.sections);
-    if (context.session.selection.active() && tools.next(checkboxWidth("and everything"))) {
+    if (const std::string selected = selectionName(context.session);
+        !selected.empty() && tools.next(checkboxWidth("and everything"))) {
         ImGui::Checkbox("and everything", &view.sections.everything);
-        if (ImGui::IsItemHovered()) tooltip("Beside each curve of the selection one of everything");
+        if (ImGui::IsItemHovered()) tooltip(("Beside each curve of " + selected + " one of everything").c_str());
     }
     if (!states) return;
+    const std::string times = chosenTimesText(info, view.times, context.session.time);
     exportMenu(context, tools,
                {.name = "sections",
                 .figure =
@@ -189,8 +191,9 @@ void drawToolbar(ViewContext& context, ProfileView& view, const std::vector<int>
                         return plotPage(plots, 0, form);
                     },
                 .table = [info, states](const Progress&) { return sectionTable(info, *states); },
-                .brushed = states->front().query.selection.active()});
-    drawOrigin(context, tools, shown, view.times.empty());
+                .brushed = states->front().query.selection.active()},
+               view.times.empty(), view.times.empty() ? std::string() : originText(context) + times);
+    drawOriginText(context, tools, originText(context, shown) + times, view.times.empty());
 }
 
 } // namespace

@@ -154,11 +154,14 @@ volume::DerivedParameter newDifference(const volume::DatasetInfo& info, const st
 
 std::string showDifference(Session& session, const volume::DatasetInfo& info, const std::string& channel,
                            const volume::TimeReference& from) {
+    const double before = session.time;
     const std::string name = addDerived(session, newDifference(info, channel, from));
     showParameter(session, name);
     const bool moved = leaveReference(session, info, from);
     return "New parameter: " + name +
-           (moved ? ", shown at " + timeText(info, session.time) + ": there is no difference at the time before" : "");
+           (moved ? ", shown at " + timeText(info, session.time) + ": at " + timeText(info, before) +
+                        " there is no difference"
+                  : "");
 }
 
 std::string addDerived(Session& session, const volume::DerivedParameter& wanted) {
@@ -183,7 +186,9 @@ void differenceItems(ViewContext& context, DerivedDraft& draft, const std::strin
     const auto item = [&](const std::string& label, const volume::TimeReference& from) {
         if (!ImGui::MenuItem((channel + " minus " + label).c_str())) return;
         showDifference(context.session, info, channel, from);
-        draft.parameters = context.session.data.derived;
+        // What is being typed is not given up for it.
+        for (const volume::DerivedParameter& each : context.session.data.derived)
+            if (std::ranges::find(draft.parameters, each) == draft.parameters.end()) draft.parameters.push_back(each);
     };
     if (info.times.size() > 1) {
         item("first", {volume::OtherTime::First});

@@ -26,6 +26,11 @@ void drawLens(const WidgetContext& widgets, const Session& session, vis::Layer& 
     chooseLens("##lens", session, layer.lens, "everywhere");
 }
 
+bool isLabel(const volume::DatasetInfo& info, const std::string& name) {
+    const auto channel = info.findChannel(name);
+    return channel && volume::parameterOf(info, *channel).categorical;
+}
+
 /// The region that a surface of a label is around, by its name; true for fields that such a surface does not have.
 bool drawRegion(const WidgetContext& widgets, vis::IsoLayer& surface, const volume::DatasetInfo& info,
                 const FieldInfo& field) {
@@ -33,7 +38,7 @@ bool drawRegion(const WidgetContext& widgets, vis::IsoLayer& surface, const volu
     if (!channel || (field.key != "value" && field.key != "method")) return false;
     const volume::Parameter& label = volume::parameterOf(info, *channel);
     if (!label.categorical) return false;
-    if (field.key == "method") return true; // polygons
+    if (field.key == "method") return surface.method == vis::SurfaceMethod::Polygons; // as they should be
     drawLabel(widgets, "Region", "Region that the surface is around");
     const int now = int(std::lround(surface.value));
     if (!ImGui::BeginCombo("##region", volume::labelName(label, now).c_str())) return true;
@@ -87,7 +92,12 @@ void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::
         dropFormerFunction(context.session, layer, functions, context.source->info());
         followSelectedLayer(context.session);
     }
-    if (now != before) aimLayer(context.session, *context.source, layer);
+    if (now == before) return;
+    if (auto* const surface = std::get_if<vis::IsoLayer>(&layer.technique); surface && isLabel(*widgets.info, before)) {
+        surface->method = vis::IsoLayer().method;
+        surface->color = vis::IsoLayer().color;
+    }
+    aimLayer(context.session, *context.source, layer);
 }
 
 } // namespace tessera::app

@@ -230,6 +230,7 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                  const std::shared_ptr<const StatisticsResult>& result,
                  const std::shared_ptr<HistogramFamily>& family) {
     std::string name = channel.name;
+    const std::string times = chosenTimesText(context.numbers->info(), view.times, context.session.time);
     ToolRow tools(context);
     const float width = std::min(em() * 11, tools.room() * 0.4f);
     if (tools.next(width)) {
@@ -266,9 +267,11 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                      if (!selected.empty()) sayWeighted(table.columns.back());
                      return table;
                  },
-             .brushed = result->brushed});
+             .brushed = result->brushed},
+            view.times.empty(), view.times.empty() ? std::string() : originText(context) + times);
+        drawOriginText(context, tools, originText(context, {result->query.channels.front()}) + times,
+                       view.times.empty());
     }
-    if (result) drawOrigin(context, tools, {result->query.channels.front()}, !family);
     if (context.session.selection.brushes.empty()) drawNote(tools, "drag to brush");
 }
 
@@ -295,14 +298,16 @@ void drawHistogramView(ViewContext& context, const std::string& pane, HistogramV
         query.time = times[i];
         const std::string key = "histogram " + pane + (i > 0 ? " " + std::to_string(i) : "");
         family->results.push_back(cache.answers.get(context, key, query));
-        if (i > 0 && family->results.back() && family->results.back()->query.time != times[i])
-            family->results.back() = nullptr; // still that of another time
+        const auto& read = family->results.back();
+        if (i > 0 && read && (read->query.time != times[i] || read->query.selection != query.selection))
+            family->results.back() = nullptr; // still that of another time or selection
         family->times.push_back(volume::timeAt(info.times, times[i]));
     }
     family->names = stateNames(info, family->times);
     const auto result = family->results.front();
     if (result && result->brushed) family->selected = selectionName(context.session);
-    if (times.size() < 2 || (result && result->query.time != times.front()) ||
+    if (times.size() < 2 ||
+        (result && (result->query.time != times.front() || result->query.selection != query.selection)) ||
         std::ranges::find(family->results, nullptr) != family->results.end())
         family = nullptr;
     drawToolbar(context, view, channel, result, family);

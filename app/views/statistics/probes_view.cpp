@@ -56,7 +56,10 @@ void drawProbesView(ViewContext& context, const std::string& pane, ProbesView& v
         [](const auto& source, const std::vector<Probe>& asked, int, const Progress&) {
             return readProbes(*source, asked);
         },
-        [](const std::vector<Probe>&, const std::vector<Probe>&) { return true; });
+        // Values of the first ones stand while further ones are read.
+        [](const std::vector<Probe>& read, const std::vector<Probe>& wanted) {
+            return read.size() <= wanted.size() && std::equal(read.begin(), read.end(), wanted.begin());
+        });
     if (!values) {
         const std::string failure = cache.answers.failure();
         return failure.empty() ? ImGui::TextDisabled("Reading...") : drawHint("No values", failure.c_str());

@@ -271,7 +271,8 @@ bool drawRegions(ViewContext& context, ToolRow& tools, const std::string& pane, 
     const std::vector<RegionRow> rows = regionRows(info, query, *numbers, selected ? selection : "all");
     const auto table = std::make_shared<Table>(regionTable(rows, info.lengthUnit, showsErrors(rows)));
     std::vector<bool> known;
-    for (const int channel : shown) known.push_back(isKnown(context.origin, info, {{channel}, *label, query.time}));
+    for (const int channel : shown)
+        known.push_back(isKnown(context.origin, info, {{channel}, *label, query.time, query.brushes}));
     const std::string origin = originText(context.origin, info, shown, known);
     ViewExport made = exportOf("regions", table);
     made.brushed = selected;

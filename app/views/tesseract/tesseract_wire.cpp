@@ -157,8 +157,9 @@ void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame, std::vector<s
     const glm::dvec4 from = vis::corner4(corner, frame.half);
     const auto write = [&](glm::dvec4 place, ImU32 color, const std::string& text) {
         const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+        if (size.x > frame.max.x - frame.min.x || size.y > frame.max.y - frame.min.y) return;
         const ImVec2 on = frame.pixel(frame.project(place).at);
-        const ImVec2 at{std::clamp(on.x, frame.min.x + size.x / 2, std::max(frame.min.x, frame.max.x) - size.x / 2),
+        const ImVec2 at{std::clamp(on.x, frame.min.x + size.x / 2, frame.max.x - size.x / 2),
                         std::clamp(on.y, frame.min.y + size.y / 2, frame.max.y - size.y / 2)};
         const ImVec2 lo{at.x - size.x / 2, at.y - size.y / 2}, hi{at.x + size.x / 2, at.y + size.y / 2};
         for (const auto& [min, max] : taken)
