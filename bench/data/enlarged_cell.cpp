@@ -59,7 +59,8 @@ volume::Field enlarged(const volume::Field& coarse, const volume::Lattice& from,
 } // namespace
 
 volume::Dataset enlargedCell(glm::ivec3 size, int times, double noise) {
-    auto small = std::make_shared<volume::Dataset>(volume::makeModel("fuel-cell", {{"times", double(times)}}));
+    auto small =
+        std::make_shared<volume::Dataset>(volume::makeModel("fuel-cell", {{"times", double(times)}, {"even", 1}}));
     volume::Dataset large{.info = small->info, .read = {}};
     const volume::Lattice from = small->info.lattice;
     volume::Lattice& to = large.info.lattice;

@@ -12,7 +12,7 @@ BenchTable benchStyles() {
     BenchTable table{"styles", {"look", timeColumn(benchClock()), "plain", "ratio"}, {}};
     vis::Renderer renderer{vis::RendererOptions{}};
     renderer.setSource(
-        volume::makeMemorySource(volume::makeModel("fuel-cell", {}), {.lattice = volume::LatticeKind::BCC}));
+        volume::makeMemorySource(volume::makeModel("fuel-cell", {{"even", 1}}), {.lattice = volume::LatticeKind::BCC}));
     vis::Scene scene;
     scene.stretch = {5, 10, 1};
     scene.camera.distance = 1.8f;

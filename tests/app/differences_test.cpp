@@ -22,7 +22,7 @@ namespace {
 DataRef cell(double cells = 23) {
     DataRef data;
     data.model = "fuel-cell";
-    data.settings = {{"nx", 9}, {"ny", 11}, {"nz", cells}, {"times", 3}};
+    data.settings = {{"nx", 9}, {"ny", 11}, {"nz", cells}, {"times", 3}, {"even", 1}}; // as the planted one
     return data;
 }
 

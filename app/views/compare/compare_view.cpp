@@ -67,10 +67,13 @@ void drawOver(const Frame& frame, const PictureBox& box, std::size_t index, bool
     if (!shown.title) return;
     const PlotColors colors = plotColors();
     const float pad = em() * 0.5f;
+    const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes);
+    const bool noted = !uneven.empty() && left, low = box.size.y < em() * 4;
     addFittedWithBackdrop(draw, {left ? box.min.x + pad : box.max().x - pad, box.min.y + em() * 0.4f},
-                          {left ? 0.0f : 1.0f, 0}, colors.text, nameOf(frame, index),
+                          {left ? 0.0f : 1.0f, 0}, colors.text,
+                          nameOf(frame, index) + (noted && low ? ", " + uneven : ""),
                           box.size.x * (left ? 1.0f : 0.5f) - 2 * pad);
-    if (const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes); !uneven.empty() && left)
+    if (noted && !low)
         addTextWithBackdrop(draw, {box.min.x + pad, box.max().y - pad}, {0, 1}, colors.faint, uneven.c_str());
     // In a low picture it would cover what is compared; the table says it as well.
     if (left && index == frame.reference && box.size.y > em() * 7)

@@ -346,7 +346,9 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     const bool moving = (moved || context.interacting || session.animation.playing) && !context.headless;
     const std::vector<ShownFace> faces = shownFaces(session, frame, view);
     const std::vector<LegendEntry> legends = faceLegends(session, info, view, faces);
-    const LegendRoom room{frame.min, frame.max()};
+    const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes);
+    const bool noted = !uneven.empty() && context.decoration.title; // in the upper right corner
+    const LegendRoom room{frame.min, frame.max(), noted ? em() * 1.8f : 0};
     const bool explained = context.decoration.legend && !legends.empty();
     if (!moving) {
         // Flat projections are small: a little of one matters.
@@ -368,8 +370,7 @@ void drawShadowCubeView(ViewContext& context, const std::string& pane, ShadowCub
     if (explained) drawLegends(draw, legends, room, cache.legend);
     drawCubeAxes(draw, frame, axes, axisLabels(session, info), taken);
     cache.menu.titles = {};
-    if (const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes);
-        !uneven.empty() && context.decoration.title) {
+    if (noted) {
         const ImVec2 at{frame.max().x - em() * 0.5f, frame.min.y + em() * 0.4f},
             size = ImGui::CalcTextSize(uneven.c_str());
         addTextWithBackdrop(draw, at, {1, 0}, plotColors().faint, uneven.c_str());
