@@ -340,14 +340,6 @@ bool canChooseLattice(const DataRef& data, const volume::BrickSource& numbers, c
            volume::canBeCentred(numbers);
 }
 
-double storedBytes(const std::shared_ptr<const volume::BrickSource>& pictures) {
-    if (!pictures) return 0;
-    const auto shown = volume::centredFrom(*pictures);
-    const auto below = volume::underived(shown ? shown : pictures);
-    const auto* archive = dynamic_cast<const codec::Archive*>(below.get());
-    return archive ? double(archive->fileBytes()) : 0;
-}
-
 PictureLattice latticeOf(const Sources& sources) {
     if (sources.pictures == sources.numbers || sources.pictures == sources.packed) return PictureLattice::Grid;
     const bool even = sources.pictures->info().lattice.isEven() && !sources.numbers->info().lattice.isEven();

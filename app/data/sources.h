@@ -72,9 +72,6 @@ ComparedData openCompared(DataRef& data, const Session& session, std::vector<std
 std::shared_ptr<const volume::BrickSource> openSource(const DataRef& data, std::vector<std::string>& messages,
                                                       const Progress& progress = {});
 
-/// Bytes of the archive that pictures are drawn from; 0 where it is none.
-double storedBytes(const std::shared_ptr<const volume::BrickSource>& pictures);
-
 /// True where files or a model are named; true for one file that is an archive.
 bool hasData(const DataRef& data);
 bool isArchive(const DataRef& data);

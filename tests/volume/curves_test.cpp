@@ -99,7 +99,7 @@ void expectStatistics(const Dataset& dataset, const std::string& parameter, cons
 }
 
 TEST(Curves, StatisticsOfTheBuiltInCellAreSumsOverItsSamples) {
-    Dataset cell = makeModel("fuel-cell", {{"nx", 9}, {"ny", 13}, {"nz", 21}, {"times", 3}});
+    Dataset cell = makeModel("fuel-cell", {{"nx", 9}, {"ny", 13}, {"nz", 21}, {"times", 3}, {"even", 1}});
     std::string label;
     for (const Parameter& parameter : cell.info.parameters)
         if (parameter.categorical) label = parameter.name;

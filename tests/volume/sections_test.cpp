@@ -7,6 +7,7 @@
 #include "volume/import/import.h"
 #include "volume/synthetic/models.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>

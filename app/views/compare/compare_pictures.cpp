@@ -3,11 +3,14 @@
 #include "app/data/open.h"
 #include "app/edits/compare_files.h"
 #include "app/pane/inner_view.h"
+#include "codec/archive/archive.h"
 #include "codec/container/json_text.h"
 #include "codec/remote/address.h"
 #include "vis/transfer/transfer_function.h"
 #include "volume/base/error.h"
 #include "volume/bricks/source_at_time.h"
+#include "volume/derived/derived.h"
+#include "volume/sources/centred_source.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -16,6 +19,15 @@
 namespace tessera::app {
 
 namespace {
+
+/// Bytes of the archive that pictures are drawn from; 0 where it is none.
+double storedBytes(const std::shared_ptr<const volume::BrickSource>& pictures) {
+    if (!pictures) return 0;
+    const auto shown = volume::centredFrom(*pictures);
+    const auto below = volume::underived(shown ? shown : pictures);
+    const auto* archive = dynamic_cast<const codec::Archive*>(below.get());
+    return archive ? double(archive->fileBytes()) : 0;
+}
 
 /// Files named without a folder are in the folder of the session's data.
 DataRef located(DataRef data, const DataRef& session) {

@@ -293,19 +293,16 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     const std::optional<int> fourth = fourthChannel(info, view);
     std::vector<LegendEntry> entries;
     LegendEntry along;
-    along.function = fourthColors();
     if (fourth) {
-        const LegendEntry own = legendOf(session, info, *fourth);
-        along.title = own.title;
-        along.unit = own.unit;
-        along.range = along.data = own.data;
-        along.marker = own.marker;
+        along = legendOf(session, info, *fourth);
+        along.range = along.data;
     } else {
         along.title = timeWord(info);
         along.unit = info.timeUnit;
         along.range = along.data = {info.times.front(), info.times.back()};
         along.marker = session.time;
     }
+    along.function = fourthColors();
     entries.push_back(along);
     if (view.colorBy == TesseractColor::Value) entries.push_back(legendOf(session, info, channel));
     // The edges reach everywhere as it turns: the legends stay where they are.

@@ -7,6 +7,8 @@
 /// Texts at the upper edge of a picture in space, of which none lies over another.
 namespace tessera::app {
 
+inline constexpr float kUpperLine = 1.3f; ///< em from one line to the next
+
 struct UpperTexts {
     std::vector<std::string> left; ///< lines
     std::size_t faintFrom = 0;     ///< lines from here on are of the stretch

@@ -18,6 +18,7 @@
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
 #include "app/views/volume/link_control.h"
+#include "app/views/volume/probe_marks.h"
 #include "app/views/volume/space_beside.h"
 #include "app/views/volume/upper_texts.h"
 #include "volume/import/files/upright.h"
@@ -171,8 +172,6 @@ public:
     }
 
 private:
-    static constexpr float kUpperLine = 1.3f; ///< em
-
     ImVec2 max() const { return picture_.max(); }
     /// Whether box and cross-hair suit what is shown.
     bool framed() const { return view_.drawingBox || !onlyDrawings(session_); }
@@ -207,7 +206,7 @@ private:
     /// Draws lines and handles in space, besides the scene.
     void drawObjects(const SpaceFrame& space) {
         if (view_.showCursor && shown_.cursor && framed()) drawCursor3d(*list_, space, session_.cursor);
-        if (view_.showCursor && shown_.cursor && framed()) drawProbes(space);
+        if (view_.showCursor && shown_.cursor && framed()) drawProbes(*list_, space, session_.probes);
         if (!shown_.outlines) return;
         drawSpaceBrushes(*list_, space, session_.selection);
         drawProfileLines(*list_, space, session_);
@@ -218,20 +217,9 @@ private:
         drawHandles(*list_, cache_.handles, space, session_, info_, view_.showLights);
     }
 
-    /// A dot with its name at each probe.
-    void drawProbes(const SpaceFrame& space) {
-        for (const Probe& probe : session_.probes) {
-            const auto at = space.pixel(probe.position);
-            if (!at) continue;
-            list_->AddCircleFilled(*at, em() * 0.25f, plotColors().backdrop);
-            list_->AddCircleFilled(*at, em() * 0.18f, plotColors().cursor);
-            addTextWithBackdrop(*list_, {at->x + em() * 0.5f, at->y}, {0, 0.5f}, plotColors().text, probe.name.c_str());
-        }
-    }
-
     LegendRoom legendRoom() const {
-        const float lines = shown_.title ? static_cast<float>(std::max<std::size_t>(1, upperTexts().left.size())) : 1;
-        return {picture_.min, max(), em() * (0.5f + kUpperLine * lines)};
+        const std::size_t lines = shown_.title ? upperTexts().left.size() : 1;
+        return {picture_.min, max(), em() * (0.5f + kUpperLine * float(std::max<std::size_t>(1, lines)))};
     }
 
     /// Legends and gizmo go where the box is not, nor the numbers beside it, shown or left out of this picture.

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "app/pane/axes3d.h"
+#include "app/session/session.h"
+
+#include <vector>
+
+namespace tessera::app {
+
+/// A dot with its name at each probe.
+void drawProbes(ImDrawList& draw, const SpaceFrame& space, const std::vector<Probe>& probes);
+
+} // namespace tessera::app
