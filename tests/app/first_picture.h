@@ -21,7 +21,7 @@ struct PictureMeasures {
     double body = 0;    ///< the same where every value above the surroundings of a scan is opaque
     double opacity = 0; ///< mean opacity over the box
     int colours = 0;    ///< parts of the colour map, of 16, that have at least 1 % of what is visible
-    int parts = 0;      ///< parts of it whose values occur
+    int parts = 0;      ///< parts of it that at least 1 % of the samples have
     double covered = 0; ///< share of the values that occur, in 48 parts of their range, of which something is visible
     double extent = 0;  ///< of the box, over the shorter side of the picture
     bool cut = false;   ///< part of the box lies outside of the picture
@@ -145,7 +145,7 @@ inline void measureValues(PictureMeasures& out, const Session& session, const vo
         const auto begin = visible.begin() + part * kBins;
         out.colours += std::accumulate(begin, begin + kBins, 0.0) > 0.01 * all && all > 0.01;
         const auto first = occurring.begin() + part * kBins;
-        out.parts += std::accumulate(first, first + kBins, 0.0) > 0.002 * samples;
+        out.parts += std::accumulate(first, first + kBins, 0.0) > 0.01 * samples;
     }
 }
 

@@ -12,7 +12,7 @@ vis::Image drawn(PictureMaker& maker, const char* layout, const char* pane, Pict
     request.layout = layout;
     request.data.emplace();
     request.data->model = "fuel-cell";
-    request.data->settings = {{"nx", 9}, {"ny", 11}, {"nz", 23}, {"times", 3}};
+    request.data->settings = {{"nx", 9}, {"ny", 11}, {"nz", 23}, {"times", 3}, {"even", 1}};
     request.data->lattice = lattice;
     request.data->derived = {{"ratio", "", volume::ExpressionRecipe{"O2 / (O2 + H2O)"}}};
     Opened opened = open(request);

@@ -4,6 +4,7 @@
 #include "app/views/curves/profile_data.h"
 #include "codec/archive/archive.h"
 #include "codec/pack/pack.h"
+#include "tests/volume/cell_lengths.h"
 #include "volume/analysis/statistics.h"
 #include "volume/reconstruct/probe.h"
 #include "volume/reconstruct/sample_grid.h"
@@ -253,8 +254,7 @@ TEST(Numbers, AreThoseOfTheSamplesAsComputed) {
         ++bins[std::size_t(binOf(o2[i], found.ranges[0]))];
         const glm::ivec3 at(int(i) % lattice.size.x, int(i) / lattice.size.x % lattice.size.y,
                             int(i) / lattice.size.x / lattice.size.y);
-        double share = 1; // halved at the faces of the box
-        for (int axis = 0; axis < 3; ++axis) share *= at[axis] == 0 || at[axis] + 1 == lattice.size[axis] ? 0.5 : 1;
+        const double share = volume::test::volumeInBox(cell.info, at);
         volume += share;
         sum += share * o2[i];
         const glm::dvec3 away = (lattice.position(at) - box.center) / box.radius;

@@ -14,7 +14,7 @@ protected:
         request.layout = layout;
         request.data.emplace();
         request.data->model = "fuel-cell";
-        request.data->settings = {{"nx", 5}, {"ny", 5}, {"nz", 9}, {"times", 2}};
+        request.data->settings = {{"nx", 5}, {"ny", 7}, {"nz", 9}, {"times", 2}};
         workbench.install(open(request));
         workbench.session().render.samples = 1;
     }

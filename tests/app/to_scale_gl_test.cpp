@@ -14,6 +14,8 @@
 #include "tests/app/views_fixture.h"
 #include "tests/app/workbench_fixture.h"
 #include "tests/codec/make_dataset.h"
+#include "volume/sources/memory_source.h"
+#include "volume/synthetic/models.h"
 
 #include <filesystem>
 #include <glm/geometric.hpp>
@@ -220,7 +222,8 @@ TEST(ToScaleRule, HoldsForWhatCanBeResampled) {
     even.lattice.axes = {};
     EXPECT_EQ(latticeFor(PictureLattice::Even, even), DataRef{}.lattice) << "as usual";
     EXPECT_EQ(firstLattice(PictureLattice::Even, even), DataRef{}.lattice);
-    const auto cell = fuelCell(volume::LatticeKind::CC);
+    const auto cell = volume::makeMemorySource(
+        volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 1}, {"even", 1}}), {});
     EXPECT_EQ(drawnOn(cell, PictureLattice::Even)->info().lattice.kind, volume::LatticeKind::BCC);
 }
 

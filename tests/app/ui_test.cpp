@@ -243,8 +243,8 @@ TEST_F(UiTest, PlacesAndTimesHaveTheUnitsOfTheData) {
         for (const DrawnText& text : drawnTexts()) all += text.text + "\n";
         return all;
     };
-    EXPECT_EQ(texts("cm", "h"), "test\nTime shift\n1.5 h\nCenter\n1 cm\n2 cm\n3 cm\n");
-    EXPECT_EQ(texts("", ""), "test\nTime shift\n1.5\nCenter\n1\n2\n3\n");
+    EXPECT_EQ(texts("cm", "h"), "test\nTime shift\n1.5 h\nCentre\n1 cm\n2 cm\n3 cm\n");
+    EXPECT_EQ(texts("", ""), "test\nTime shift\n1.5\nCentre\n1\n2\n3\n");
 }
 
 TEST_F(UiTest, ADoubleClickTypesANumber) {

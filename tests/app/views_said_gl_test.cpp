@@ -3,6 +3,7 @@
 #include "app/ui/ticks.h"
 #include "tests/app/drawn_text.h"
 #include "tests/app/views_fixture.h"
+#include "tests/volume/cell_lengths.h"
 
 #include <gmock/gmock.h>
 #include <imgui_internal.h>
@@ -29,17 +30,6 @@ protected:
         return said(body);
     }
 };
-
-/// Share of a sample's cell that lies within the box of the first to the last sample.
-static double insideBox(const volume::Lattice& lattice, std::size_t index) {
-    double share = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-        const int at = int(index % std::size_t(lattice.size[axis]));
-        index /= std::size_t(lattice.size[axis]);
-        if (at == 0 || at + 1 == lattice.size[axis]) share *= 0.5;
-    }
-    return share;
-}
 
 TEST_F(SaidViews, WithDataAndRoomNothingIsMissing) {
     show(fuelCell(volume::LatticeKind::CC));
@@ -95,7 +85,9 @@ TEST_F(SaidViews, TheTableOfTheSelectionHasItsHeads) {
         if (field.mask && (*field.mask)[i] == 0) continue;
         const double value = double(field.as<float>()[i]);
         const int side = value <= 0.5 * (range.lo + range.hi) ? 0 : 1;
-        const double volume = insideBox(field.lattice, i); // of the sample's cell
+        const glm::ivec3 size = field.lattice.size;
+        const glm::ivec3 at(int(i) % size.x, int(i) / size.x % size.y, int(i) / size.x / size.y);
+        const double volume = volume::test::volumeInBox(cell.info, at); // of the sample's cell
         sum[side] += volume * value;
         count[side] += volume;
     }

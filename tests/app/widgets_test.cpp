@@ -133,11 +133,11 @@ TEST_F(Widgets, PlacesInTheDataFitTheirPaneInAHandyUnit) {
     }
     width = 700;
     EXPECT_EQ(numbers()[2].text, "12.35 mm");
-    EXPECT_THAT(drawnWords(), Contains("Center"));
+    EXPECT_THAT(drawnWords(), Contains("Centre"));
     width = 300;
     const DrawnText last = numbers()[2];
     EXPECT_EQ(last.text, "12.3");
-    EXPECT_THAT(drawnWords(), Contains("Center [mm]")) << "the unit stands in the label where the numbers have none";
+    EXPECT_THAT(drawnWords(), Contains("Centre [mm]")) << "the unit stands in the label where the numbers have none";
     EXPECT_EQ(ball, before) << "looking changes nothing";
     mouse = last.middle();
     frames(3, draw);

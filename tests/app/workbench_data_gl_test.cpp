@@ -140,7 +140,8 @@ TEST_F(WorkbenchData, TheLatticeIsAStepOfTheHistory) {
 }
 
 TEST_F(WorkbenchData, OneGridOfAnArchiveInSpaceAndTimeIsAStepOfTheHistory) {
-    volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 23}, {"times", 8}});
+    volume::Dataset cell =
+        volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 23}, {"times", 8}, {"even", 1}});
     codec::PackOptions options;
     options.lattice = codec::StoredLattice::D4;
     codec::pack(cell, options, (folder / "d4.tsr").string());

@@ -29,7 +29,8 @@ protected:
 };
 
 TEST_F(WrittenViews, CurvesLieAtTheirValuesAndBreakWhereThereIsNone) {
-    volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 4}});
+    volume::Dataset cell =
+        volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 4}, {"even", 1}});
     cell.info.quantities = {{"voltage", "V", {0.7, std::nan(""), 0.6, 0.4}}};
     show(volume::makeMemorySource(std::move(cell), {}));
     session.time = source->info().times[3];

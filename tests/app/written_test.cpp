@@ -195,7 +195,7 @@ TEST(HistoryWords, CallThingsByTheirNames) {
     EXPECT_EQ(said("/layers/1/technique/value"), "O2 surface: value");
     EXPECT_EQ(said("/layers/1/technique/color/0"), "O2 surface: colour");
     EXPECT_EQ(said("/layers/1", "remove"), "O2 surface removed");
-    EXPECT_EQ(said("/lenses/0/center/2"), "lens: center");
+    EXPECT_EQ(said("/lenses/0/center/2"), "lens: centre");
     EXPECT_EQ(said("/lenses/1", "add"), "lens inlet added");
     EXPECT_EQ(said("/selection/brushes/0/region/intervals/1/lo"), "brush hot: region");
     EXPECT_EQ(said("/selection/brushes/0", "add"), "brush hot added");

@@ -38,7 +38,7 @@ def same(a, b, what=""):
 class Reading(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        run("generate", "fuel-cell", "-o", "exact.tsr", "--size", "11x13x70", "--times", "3")
+        run("generate", "fuel-cell", "--even", "-o", "exact.tsr", "--size", "11x13x70", "--times", "3")
         run("convert", "exact.tsr", "-o", "cc.tsr", "--lattice", "cc", "--brick-size", "16")
         cls.cc, cls.bcc = tessera.open("cc.tsr"), tessera.open("exact.tsr")
 
@@ -214,7 +214,7 @@ class Xarray(unittest.TestCase):
         self.xarray = xarray
 
     def test_a_data_set_is_opened_by_the_name_of_the_engine(self):
-        run("generate", "fuel-cell", "-o", "x.tsr", "--size", "7x9x20", "--times", "2")
+        run("generate", "fuel-cell", "--even", "-o", "x.tsr", "--size", "7x9x20", "--times", "2")
         run("convert", "x.tsr", "-o", "xcc.tsr", "--lattice", "cc")
         data, archive = self.xarray.open_dataset("xcc.tsr", engine="tessera"), tessera.open("xcc.tsr")
         self.assertEqual(data["T"].dims, ("time", "z", "y", "x"))
@@ -235,7 +235,7 @@ class Vtk(unittest.TestCase):
             from tessera.vtk_reader import TesseraReader
         except ImportError:
             self.skipTest("no VTK for Python")
-        run("generate", "fuel-cell", "-o", "v.tsr", "--size", "7x9x20", "--times", "3")
+        run("generate", "fuel-cell", "--even", "-o", "v.tsr", "--size", "7x9x20", "--times", "3")
         run("convert", "v.tsr", "-o", "vcc.tsr", "--lattice", "cc")
         self.reader, self.archive = TesseraReader(), tessera.open("vcc.tsr")
         self.reader.SetFileName("vcc.tsr")

@@ -18,7 +18,7 @@ check "one time" 0 "$tessera" generate fuel-cell --even -o one.vti --size 7x13x2
 
 # Packed as CC without loss and unpacked, the raw samples are those generated.
 check "raw" 0 "$tessera" generate fuel-cell --even -o direct.raw --size 7x13x20 --times 2
-check "lossless on CC" 0 "$tessera" generate fuel-cell -o cc.tsr --size 7x13x20 --times 2 --lattice cc --lossless
+check "lossless on CC" 0 "$tessera" generate fuel-cell --even -o cc.tsr --size 7x13x20 --times 2 --lattice cc --lossless
 check "unpack" 0 "$tessera" unpack cc.tsr -o back.raw
 cmp direct.raw back.raw || fail "the way through an archive changed samples"
 

@@ -20,7 +20,7 @@ check "the same picture" 0 "$tessera" render --layout overview -o from-build.png
 cmp -s overview.png from-build.png || fail "the installed program draws another picture"
 
 if has_importer; then
-    "$tessera" generate fuel-cell -o cell.tsr --size 7x13x20 --times 1 > /dev/null || die "generate"
+    "$tessera" generate fuel-cell --even -o cell.tsr --size 7x13x20 --times 1 > /dev/null || die "generate"
     "$tessera" unpack cell.tsr -o cell.vti > /dev/null || die "unpack"
     check "its own importer reads" 0 env -u TESSERA_IMPORT "$moved/bin/tessera" info cell.vti
     mv "$moved/bin/tessera-import" elsewhere
@@ -28,7 +28,7 @@ if has_importer; then
 fi
 
 if ls "$build"/python/tessera/_tessera*.so > /dev/null 2>&1 && /usr/bin/python3 -c "import numpy" 2> /dev/null; then
-    "$tessera" generate fuel-cell -o python.tsr --size 7x13x20 --times 1 > /dev/null || die "generate"
+    "$tessera" generate fuel-cell --even -o python.tsr --size 7x13x20 --times 1 > /dev/null || die "generate"
     check "the installed Python package reads" 0 env PYTHONPATH="$moved/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1 \
         /usr/bin/python3 -c 'import tessera; print(tessera.__file__, tessera.open("python.tsr")["T"].shape)'
     say "^$moved/.*(1, 20, 13, 7)" out.txt

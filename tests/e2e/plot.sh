@@ -83,5 +83,5 @@ data=${TESSERA_DATA:-$TESSERA_TEST_DATA}/fuel-cell
 grep -v '^#' cell.csv | tail -1 | grep -q '^0.26,5432.*,0.4$' || die "the last state: $(tail -1 cell.csv)"
 "$tessera" plot "$data/grid/small.pvd" --x time --y 'mean(T)' --y 'max(T)' --region region=1 --over-time \
     "$data/history.csv" -o T.csv || die "mean T over time"
-head -3 T.csv | grep -q '^time \[s\],mean(T) \[K\],max(T) \[K\]$' || die "names and units: $(head -2 T.csv)"
+head -3 T.csv | grep -q '^time \[s\],mean(T) in region 1 \[K\],max(T) in region 1 \[K\]$' || die "names and units: $(head -2 T.csv)"
 finish

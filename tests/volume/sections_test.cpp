@@ -1,13 +1,13 @@
 #include "volume/flow/sections.h"
 
 #include "tests/volume/cell_data.h"
+#include "tests/volume/cell_lengths.h"
 #include "volume/flow/box_cut.h"
 #include "volume/flow/flow_channels.h"
 #include "volume/import/foreign.h"
 #include "volume/import/import.h"
 #include "volume/synthetic/models.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -291,14 +291,7 @@ std::vector<double> meansAlongZ(const Dataset& data, int parameter, int label, i
     std::vector<double> sums(std::size_t(lattice.size.z)), areas(sums);
     forAll(lattice, [&](glm::ivec3 at, std::size_t i) {
         if (!f.present(i) || !labels.present(i) || labels.value(i) != region) return;
-        double area = 1; // of the cell in the box
-        for (int axis = 0; axis < 2; ++axis) {
-            const double place = lattice.position(at)[axis], half = 0.5 * lattice.spacing[axis];
-            const double lo = std::max(place - half, data.info.bounds.lo[axis]);
-            const double hi = std::min(place + half, data.info.bounds.hi[axis]);
-            const AxisMap* const map = lattice.axes[axis];
-            area *= map ? map->length(at[axis]) : hi - lo;
-        }
+        const double area = test::lengthInBox(data.info, at, 0) * test::lengthInBox(data.info, at, 1);
         sums[std::size_t(at.z)] += area * double(float(f.value(i)));
         areas[std::size_t(at.z)] += area;
     });
