@@ -83,6 +83,7 @@ TEST_F(SelectionHands, AClickOnAnExtremeGoesToItsPlace) {
     const Found least = extremeOf("T", 0.5, false, selected);
     const Range range = formula::rangeOf("T");
     const auto text = [&](double value) { return formatNumber(value, (range.hi - range.lo) / 10000); };
+    for (int i = 0; i < 4; ++i) frame(); // until the columns have their widths
     click(drawnAt(text(least.value)));
     settle();
     expectAt(least.at);
