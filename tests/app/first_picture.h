@@ -20,8 +20,8 @@ struct PictureMeasures {
     double seen = 0;    ///< share of the pixels of the box that differ visibly from the ground
     double body = 0;    ///< the same where every value above the surroundings of a scan is opaque
     double opacity = 0; ///< mean opacity over the box
-    int colours = 0;    ///< parts of the colour map, of 16, that have at least 1 % of what is visible
-    int parts = 0;      ///< parts of it that at least 1 % of the samples have
+    int colours = 0;    ///< parts of the colour map, of 16, that have at least 0.5 % of what is visible
+    int parts = 0;      ///< parts of it that at least 2 % of the samples have
     double covered = 0; ///< share of the values that occur, in 48 parts of their range, of which something is visible
     double extent = 0;  ///< of the box, over the shorter side of the picture
     bool cut = false;   ///< part of the box lies outside of the picture
@@ -143,9 +143,9 @@ inline void measureValues(PictureMeasures& out, const Session& session, const vo
     out.covered = occur > 0 ? double(seen) / occur : 0;
     for (int part = 0; part < kMap; ++part) {
         const auto begin = visible.begin() + part * kBins;
-        out.colours += std::accumulate(begin, begin + kBins, 0.0) > 0.01 * all && all > 0.01;
+        out.colours += std::accumulate(begin, begin + kBins, 0.0) > 0.005 * all && all > 0.01;
         const auto first = occurring.begin() + part * kBins;
-        out.parts += std::accumulate(first, first + kBins, 0.0) > 0.01 * samples;
+        out.parts += std::accumulate(first, first + kBins, 0.0) > 0.02 * samples;
     }
 }
 

@@ -142,11 +142,11 @@ TEST_F(WrittenViews, ADragOverSectionsTakesTheCursorToTheirPlanes) {
         places.push_back(session.cursor.z);
     }
     ImGui::GetIO().MouseDown[0] = false;
-    const volume::Box& bounds = source->info().bounds;
+    const volume::Lattice& lattice = source->info().lattice; // of cells: planes go through their middles
     EXPECT_TRUE(std::is_sorted(places.begin(), places.end()));
     EXPECT_GT(std::set<double>(places.begin(), places.end()).size(), 30u);
-    EXPECT_NEAR(places.front(), bounds.lo.z, 1e-9);
-    EXPECT_NEAR(places.back(), bounds.hi.z, 1e-9);
+    EXPECT_NEAR(places.front(), lattice.position(glm::ivec3(0)).z, 1e-9);
+    EXPECT_NEAR(places.back(), lattice.position(lattice.size - 1).z, 1e-9);
 }
 
 class WrittenDown : public DrawnWorkbench {
