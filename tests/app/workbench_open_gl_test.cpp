@@ -305,7 +305,7 @@ TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInTheirPanes) {
     OpenRequest request;
     request.data.emplace();
     request.data->model = "fuel-cell";
-    request.data->settings = {{"nx", 5}, {"ny", 5}, {"nz", 21}, {"times", 2}};
+    request.data->settings = {{"nx", 5}, {"ny", 7}, {"nz", 21}, {"times", 2}};
     Json near = loadSession(findLayout("compressionError")).raw;
     near["camera"]["distance"] = 0.8;
     write("near.json", near.dump());
@@ -375,7 +375,7 @@ TEST_F(WorkbenchOpening, CamerasOfLayoutsShowTheWholeBoxInComparisons) {
         OpenRequest request;
         request.data.emplace();
         request.data->model = "fuel-cell";
-        request.data->settings = {{"nx", 5}, {"ny", 5}, {"nz", 21}, {"times", 2}};
+        request.data->settings = {{"nx", 5}, {"ny", 7}, {"nz", 21}, {"times", 2}};
         Json near = loadSession(findLayout("compareCompression")).raw;
         near["camera"]["distance"] = 0.8;
         write("near.json", near.dump());
