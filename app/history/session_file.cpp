@@ -81,7 +81,9 @@ void migrateLattice(Json& document) {
     }
 }
 
-void keepEvenGridOf(Json& data) {
+/// Up to schema 3 meshes and uneven grids were sampled on even grids: the samples of such sessions stay where they
+/// were.
+void keepEvenGrid(Json& data) {
     const auto files = data.find("files");
     if (files == data.end() || !files->is_array() || files->empty()) return;
     Json& import = data["import"];
@@ -90,16 +92,8 @@ void keepEvenGridOf(Json& data) {
         import["grid"] = volume::kGridChoiceNames[std::size_t(volume::GridChoice::Even)];
 }
 
-/// Up to schema 3 meshes and uneven grids were sampled on even grids: the samples of such sessions stay where they
-/// were.
-void keepEvenGrid(Json& document) {
-    const auto data = document.find("data");
-    if (data == document.end() || !data->is_object()) return;
-    keepEvenGridOf(*data);
-    if (const auto other = data->find("other"); other != data->end() && other->is_object()) keepEvenGridOf(*other);
-}
-
-void keepEvenCellOf(Json& data) {
+/// Up to schema 4 the cells of the built-in fuel cell were all of one height.
+void keepEvenCell(Json& data) {
     const auto model = data.find("model");
     if (model == data.end() || *model != "fuel-cell") return;
     Json& settings = data["settings"];
@@ -107,12 +101,12 @@ void keepEvenCellOf(Json& data) {
     if (settings.is_object() && !settings.contains("even")) settings["even"] = 1;
 }
 
-/// Up to schema 4 the cells of the built-in fuel cell were all of one height.
-void keepEvenCell(Json& document) {
+/// Changes the data of a document, and the other data beside them.
+void forEachData(Json& document, void (*change)(Json& data)) {
     const auto data = document.find("data");
     if (data == document.end() || !data->is_object()) return;
-    keepEvenCellOf(*data);
-    if (const auto other = data->find("other"); other != data->end() && other->is_object()) keepEvenCellOf(*other);
+    change(*data);
+    if (const auto other = data->find("other"); other != data->end() && other->is_object()) change(*other);
 }
 
 /// Up to schema 4 brushed samples that a transfer function hides stayed hidden.
@@ -139,9 +133,9 @@ void migrate(Json& document, const std::string& file) {
                         "), which is no longer read",
                     file, "/schema");
     if (schema < 3) migrateLattice(document);
-    if (schema < 4) keepEvenGrid(document);
+    if (schema < 4) forEachData(document, keepEvenGrid);
     if (schema < 5) {
-        keepEvenCell(document);
+        forEachData(document, keepEvenCell);
         keepHiddenFocus(document);
     }
     document["schema"] = kSessionSchema;
