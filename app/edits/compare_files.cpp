@@ -80,7 +80,7 @@ CompareVariant otherVariant(const Session& session, const volume::DatasetInfo& i
             [&]<class Technique>(const Technique& technique) {
                 Technique::describe(technique, [&]<class Member>(const Member& member, const FieldInfo& field) {
                     if constexpr (std::is_same_v<Member, std::string>)
-                        if (field.refersTo.ends_with("hannel") || field.refersTo == "vector")
+                        if (field.refersTo.ends_with("hannel") || field.refersTo.ends_with("ector"))
                             if (const std::string other = nameInOther(info, member); !other.empty())
                                 variant.changes[place + "/technique/" + std::string(field.key)] = other;
                 });

@@ -91,11 +91,13 @@ std::string parameterReference() {
     out += markdownSection<DataFile>("data.files", "A file of the data set.");
     out += markdownSection<Probe>("probes", "A place and time whose values are kept in a list.");
     out +=
-        markdownSection<vis::Layer>("layers", "A layer of the 3D views; `technique` is one of the four types below.");
+        markdownSection<vis::Layer>("layers", "A layer of the 3D views; `technique` is one of the five types below.");
     out += markdownSection<vis::VolumeLayer>("Layer of type `volume`", "A scalar drawn with its transfer function.");
     out += markdownSection<vis::IsoLayer>("Layer of type `iso`", "A surface of equal value.");
     out += markdownSection<vis::SliceLayer>("Layer of type `slice`", "A coloured plane with contour lines.");
     out += markdownSection<vis::FlowLayer>("Layer of type `flow`", "Lines, tubes and glyphs of a vector.");
+    out += markdownSection<vis::GlyphLayer>("Layer of type `glyphs`", "Figures moved by many parameters at once.");
+    out += markdownSection<vis::GlyphPart>("glyphs.parts", "A part of a glyph and the parameter that moves it.");
     out += markdownSection<vis::WarmCool>(
         "look.tone", "Part of a look. Instead of its parts, a look can be given as the name of a preset: " +
                          presetNames<vis::Look>() + ".");

@@ -101,6 +101,8 @@ private:
                     if (member.empty()) member = fallback_;
                 } else if (field.refersTo == "vector") {
                     fitVector(member);
+                } else if (field.refersTo == "optionalVector") {
+                    if (!isVector(member)) member.clear();
                 } else if (field.refersTo == "optionalChannel") {
                     if (!known(member)) member.clear();
                 } else if (field.refersTo == "colorChannel" && !member.empty() && !known(member)) {
@@ -137,10 +139,13 @@ private:
     }
 
     void fitVector(std::string& name) const {
-        const bool there = std::ranges::any_of(info_.parameters, [&](const volume::Parameter& parameter) {
+        if (!isVector(name)) name = firstVector(info_);
+    }
+
+    bool isVector(const std::string& name) const {
+        return std::ranges::any_of(info_.parameters, [&](const volume::Parameter& parameter) {
             return parameter.components == 3 && parameter.name == name;
         });
-        if (!there) name = firstVector(info_);
     }
 
     Session& session_;

@@ -157,6 +157,7 @@ std::string layerName(const vis::Layer& layer) {
     if (const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique)) return surface->channel + " surface";
     if (const auto* flow = std::get_if<vis::FlowLayer>(&layer.technique))
         return (flow->vector.empty() ? flow->channel : flow->vector) + " flow";
+    if (const auto* glyphs = std::get_if<vis::GlyphLayer>(&layer.technique)) return glyphs->channel + " glyphs";
     return std::get<vis::VolumeLayer>(layer.technique).channel + " volume";
 }
 

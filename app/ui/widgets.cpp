@@ -212,9 +212,13 @@ bool chooseChannel(const char* id, const volume::DatasetInfo* info, std::string&
     return changed;
 }
 
-bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& value) {
+bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& value, bool none) {
     bool changed = false;
     if (!beginFittedCombo(id, value.empty() ? "none" : value)) return false;
+    if (none && ImGui::Selectable("none", value.empty())) {
+        changed = !value.empty();
+        value.clear();
+    }
     if (info)
         for (const volume::Parameter& parameter : info->parameters)
             if (parameter.components == 3 && ImGui::Selectable(parameter.name.c_str(), parameter.name == value)) {
@@ -228,7 +232,8 @@ bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& 
 bool drawText(const WidgetContext& context, const FieldInfo& info, std::string& value) {
     drawLabel(context, labelOf(info.key), info.doc);
     if (info.refersTo == "channel") return chooseChannel(idOf(info).c_str(), context.info, value, "as first layer");
-    if (info.refersTo == "vector") return chooseVector(idOf(info).c_str(), context.info, value);
+    if (info.refersTo == "vector" || info.refersTo == "optionalVector")
+        return chooseVector(idOf(info).c_str(), context.info, value, info.refersTo == "optionalVector");
     if (info.refersTo == "colorChannel")
         return chooseChannel(idOf(info).c_str(), context.info, value, "own transfer function");
     if (info.refersTo == "optionalChannel") return chooseChannel(idOf(info).c_str(), context.info, value, "none");

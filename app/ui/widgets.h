@@ -58,8 +58,8 @@ bool drawColor(const WidgetContext& context, const FieldInfo& info, float* rgb);
 /// A choice of parameter without label. `emptyName` is offered for "" where given.
 bool chooseChannel(const char* id, const volume::DatasetInfo* info, std::string& value,
                    const char* emptyName = nullptr);
-/// A choice of vector parameter without label.
-bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& value);
+/// A choice of vector parameter without label. `none`: "" is offered too.
+bool chooseVector(const char* id, const volume::DatasetInfo* info, std::string& value, bool none = false);
 /// A choice of colour map, with a search and a strip of each, without label (app/ui/choose_colormap.cpp).
 bool chooseColormap(const char* id, std::string& value, bool reversed = false);
 bool beginSection(const char* id, std::string_view label, std::string_view help);

@@ -2,6 +2,7 @@
 
 #include "vis/scene/brush_effect.h"
 #include "vis/scene/flow_layer.h"
+#include "vis/scene/glyph_layer.h"
 #include "vis/scene/look.h"
 #include "volume/base/data_units.h"
 #include "volume/base/describe.h"
@@ -144,7 +145,7 @@ struct SliceLayer {
     }
 };
 
-using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer, FlowLayer>;
+using Technique = std::variant<VolumeLayer, IsoLayer, SliceLayer, FlowLayer, GlyphLayer>;
 
 /// Colour of a volume (sRGB) where its colouring parameter is absent.
 inline constexpr glm::vec3 kNoValueColor{0.5f};

@@ -2,6 +2,7 @@
 
 #include "app/session/views/view_kind.h"
 #include "app/session/views/view_state_compare.h"
+#include "app/session/views/view_state_many.h"
 #include "app/session/views/view_state_plots.h"
 #include "app/session/views/view_state_scenes.h"
 
@@ -220,6 +221,38 @@ inline constexpr std::tuple kViewKinds{
                                                 .inSpace = true,
                                                 .leastWidth = 220,
                                                 .leastHeight = 180}},
+    ViewKind<ParallelCoordinatesView, drawParallelCoordinatesView>{
+        {.title = "Parallel coordinates",
+         .help = "An axis for each parameter, and the density of all samples between them; drag to select",
+         .words = "brush selection correlation axes density many parameters",
+         .figure = true,
+         .csv = true,
+         .leastWidth = 260,
+         .leastHeight = 150}},
+    ViewKind<Scatter3dView, drawScatter3dView>{
+        {.title = "Scatterplot in 3D",
+         .help = "Samples as a turned cloud over three parameters; drag to turn it, draw around samples to select",
+         .words = "cloud density three parameters lasso brush",
+         .csv = true,
+         .inSpace = true,
+         .leastWidth = 220,
+         .leastHeight = 180}},
+    ViewKind<HyperSliceView, drawHyperSliceView>{
+        {.title = "HyperSlice",
+         .help = "All slices through the cross-hair in space and time, with profiles on the diagonal; drag to move it",
+         .words = "slices 4d time planes matrix profiles",
+         .figure = true,
+         .csv = true,
+         .leastWidth = 240,
+         .leastHeight = 200}},
+    ViewKind<WorthSeeingView, drawWorthSeeingView>{
+        {.title = "Worth seeing",
+         .help = "What stands out in the data: dependences, changes, outliers; a click opens the view that shows it",
+         .words = "find search ranked list interesting correlation events explore what when",
+         .figure = true,
+         .csv = true,
+         .leastWidth = 220,
+         .leastHeight = 150}},
     ViewKind<CompareView, drawCompareView>{{.title = "Side by side",
                                             .help = "Compare the 3D scene with different settings",
                                             .words = "variants differences small multiples",

@@ -41,13 +41,14 @@ vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std
         const std::string vector = firstVector(info);
         layer.technique = vis::FlowLayer{.vector = vector, .channel = vector.empty() ? name : "|" + vector + "|"};
     }
+    if (kind == 4) layer.technique = vis::GlyphLayer{.channel = name};
     return layer;
 }
 
 } // namespace
 
 const char* kindName(const vis::Technique& technique) {
-    static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow"};
+    static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow", "Glyphs"};
     return kNames[technique.index()];
 }
 
