@@ -87,7 +87,10 @@ volume::Tally Branches::selected(const std::vector<vis::Brush>& brushes, std::si
             const vis::Brush& brush = brushes[i];
             if (!brush.enabled) continue;
             const auto outcome = Outcome(group % 3);
-            const bool inside = outcome != Outcome::Lacking && (outcome == Outcome::Inside) != brush.inverted;
+            // What lacks a value is inside of nothing, also of what is inverted; minus that leaves what is inside.
+            const bool inside = outcome == Outcome::Lacking
+                                    ? brush.inverted && brush.combine == vis::BrushCombine::Minus
+                                    : (outcome == Outcome::Inside) != brush.inverted;
             const bool before = chosen.value_or(brush.combine != vis::BrushCombine::Or);
             chosen = brush.combine == vis::BrushCombine::And  ? before && inside
                      : brush.combine == vis::BrushCombine::Or ? before || inside

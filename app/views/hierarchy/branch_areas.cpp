@@ -72,7 +72,7 @@ void drawBranchAreas(ViewContext& context, const Branches& branches, ImVec2 min,
         };
         const ImVec2 from = place(area.x0, area.y0), to = place(area.x1, area.y1);
         draw.AddRectFilled(from, to, areaColor(brushes, area.path));
-        draw.AddRect(from, to, plotColors().backdrop);
+        draw.AddRect(from, to, plotColors().frame);
         if (to.x - from.x > em() * 3 && to.y - from.y > em() * 1.4f)
             addFittedWithBackdrop(draw, {from.x + em() * 0.3f, from.y + em() * 0.2f}, {0, 0}, plotColors().text,
                                   formatShare(area.own.volume / branches.of({}).volume) + "  " +

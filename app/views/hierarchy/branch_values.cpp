@@ -14,6 +14,8 @@ std::string brushName(const vis::Brush& brush) {
     return brush.name.empty() ? "brush" : brush.name;
 }
 
+constexpr float kOnWhiteGround = 0.7f; ///< of colours of brushes, which are bright
+
 constexpr Outcome kOutcomes[] = {Outcome::Inside, Outcome::Outside, Outcome::Lacking};
 
 void divide(const Branches& branches, const BranchArea& area, std::size_t levels, std::vector<BranchArea>& out) {
@@ -120,7 +122,7 @@ Plot branchesPlot(const std::vector<vis::Brush>& brushes, const std::vector<Bran
         if (!brushes[i].enabled) continue;
         PlotSeries line{.name = (brushes[i].inverted ? "not " : "") + brushName(brushes[i]),
                         .points = {},
-                        .color = plotInk(i, dark),
+                        .color = brushes[i].color * (dark ? 1 : kOnWhiteGround),
                         .dots = overTime.size() < 40};
         for (std::size_t t = 0; t < overTime.size(); ++t) {
             const double share =

@@ -228,11 +228,10 @@ void drawLevel(ViewContext& context, HierarchyCache& cache, const HierarchyShown
 void drawLevels(ViewContext& context, HierarchyCache& cache, const HierarchyShown& shown, HierarchyView& view,
                 float height) {
     const float width = em() * 15, gap = em() * 0.8f;
-    ImGui::BeginChild("levels", {0, height}, false, ImGuiWindowFlags_HorizontalScrollbar);
+    ImGui::BeginChild("levels", {0, height}, false,
+                      ImGuiWindowFlags_HorizontalScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
     const ImVec2 origin = ImGui::GetCursorScreenPos();
-    const float inner = ImGui::GetContentRegionAvail().y;
-    const float all = (width + gap) * float(shown.plots.size());
-    if (all > ImGui::GetContentRegionAvail().x) ImGui::SetCursorScreenPos(origin);
+    const float inner = ImGui::GetContentRegionAvail().y - em() * 0.4f;
     for (std::size_t i = 0; i < shown.plots.size(); ++i) {
         if (i > context.session.selection.brushes.size()) break;
         ImGui::SetCursorScreenPos({origin.x + float(i) * (width + gap), origin.y});

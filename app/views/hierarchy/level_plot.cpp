@@ -122,7 +122,7 @@ bool drawLevelPlot(ViewContext& context, LevelCache& cache, const LevelPlot& plo
     }
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, plotColors().frame);
-    drawBrushes(draw, brushes, frame, plot.channels);
+    drawBrushes(draw, context.session.selection, frame, plot.channels); // with their numbers
     const volume::Channel across = info.channel(plot.indices[0]);
     drawAxis(draw, frame, AxisSide::Bottom, across.name, across.unit, min.x, max.x);
     if (pair) {
