@@ -100,7 +100,7 @@ constexpr Consumer kConsumers[] = {
     {"tesseract",       "F F . . . F F . . . . . . . F . . . . . F"},
     {"parallelCoordinates", ""},
     {"scatter3d",       ""},
-    {"hyperSlice",      ""},
+    {"hyperSlice",      "F F F . . . . . . . . . . . . F . . . . F"},
     {"worthSeeing",     ""},
     {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
 };
