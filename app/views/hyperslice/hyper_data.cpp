@@ -6,6 +6,7 @@
 #include "vis/scene/brush_effect.h"
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
+#include "volume/bricks/source_at_time.h"
 #include "volume/reconstruct/probe.h"
 
 #include <algorithm>
@@ -54,13 +55,109 @@ glm::dvec4 brushedColor(const vis::Selection& selection, glm::dvec3 color, doubl
     return {vis::srgbFromLinear(tinted.x), vis::srgbFromLinear(tinted.y), vis::srgbFromLinear(tinted.z), opacity};
 }
 
-std::uint8_t byteOf(double share) {
+std::uint8_t panelByte(double share) {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+}
+
+/// Whether values between two stored times are those of both, mixed, and nothing else counts.
+bool isMixedBetween(const volume::BrickSource& source, int channel) {
+    const volume::DatasetInfo& info = source.info();
+    const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(info.channel(channel).parameter)];
+    return !parameter.categorical && !volume::labelChannel(info, parameter) &&
+           !volume::isComputedBetween(source, channel);
+}
+
+/// A panel at one time: bands of rows at once, since every band reads its bricks.
+void readInSpace(const volume::BrickSource& source, HyperValues& out, const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    const HyperQuery& query = out.query;
+    const volume::TimePair time = volume::timesAround(info.times, query.time);
+    const int bands = std::min(query.cells.y, 2 * mostThreads());
+    std::atomic<int> done = 0;
+    parallelFor(static_cast<std::size_t>(bands), [&](std::size_t band) {
+        const int from = query.cells.y * static_cast<int>(band) / bands,
+                  to = query.cells.y * (static_cast<int>(band) + 1) / bands;
+        std::vector<glm::dvec3> places;
+        for (int j = from; j < to; ++j)
+            for (int i = 0; i < query.cells.x; ++i) {
+                glm::dvec3& place = places.emplace_back(query.cursor);
+                placeAlongAxis(place, query.axes[0], cellMiddle(query.shown[0], i, query.cells.x), info);
+                placeAlongAxis(place, query.axes[1], cellMiddle(query.shown[1], j, query.cells.y), info);
+            }
+        const auto first = static_cast<std::size_t>(from) * static_cast<std::size_t>(query.cells.x);
+        for (std::size_t c = 0; c < query.channels.size(); ++c) {
+            const auto found = volume::probeAlong(source, query.channels[c], places, time);
+            for (std::size_t i = 0; i < found.size(); ++i)
+                out.values[c][first + i] = found[i].interpolated.value_or(std::nan(""));
+        }
+        progress.advance(static_cast<double>(++done) / bands);
+    });
+}
+
+/// The values of a line at stored times, each read once, from which those between are mixed as probeAlong() does.
+class LineOverTimes {
+public:
+    LineOverTimes(const volume::BrickSource& source, int channel, const std::vector<glm::dvec3>& places,
+                  const std::vector<volume::TimePair>& wanted, const Progress& progress)
+        : lines_(source.info().times.size()) {
+        std::vector<bool> needed(lines_.size());
+        for (const volume::TimePair& time : wanted)
+            needed[static_cast<std::size_t>(time.earlier)] = needed[static_cast<std::size_t>(time.later)] = true;
+        parallelFor(lines_.size(), [&](std::size_t time) {
+            progress.advance(0);
+            if (!needed[time]) return;
+            for (const volume::ProbeValue& value : volume::probeAlong(source, channel, places, static_cast<int>(time)))
+                lines_[time].push_back(value.interpolated.value_or(std::nan("")));
+        });
+    }
+    double at(const volume::TimePair& time, std::size_t place) const {
+        const double a = lines_[static_cast<std::size_t>(time.earlier)][place],
+                     b = lines_[static_cast<std::size_t>(time.later)][place];
+        if (!time.between()) return a;
+        if (std::isnan(a) || std::isnan(b)) return time.weight >= 0.5 ? b : a;
+        return (1 - time.weight) * a + time.weight * b;
+    }
+
+private:
+    std::vector<std::vector<double>> lines_; ///< by time, then by place
+};
+
+/// A panel with an axis of time: the same line at other times.
+void readOverTime(const volume::BrickSource& source, HyperValues& out, const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    const HyperQuery& query = out.query;
+    const std::size_t own = query.axes[0].ofTime() ? 0 : 1, across = 1 - own;
+    const int times = query.cells[static_cast<int>(own)], length = query.cells[static_cast<int>(across)];
+    std::vector<volume::TimePair> pairs;
+    for (int k = 0; k < times; ++k)
+        pairs.push_back(volume::timesAround(
+            info.times, query.axes[own].at(cellMiddle(query.shown[own], k, times), info.lattice.axes)));
+    std::vector<glm::dvec3> places(static_cast<std::size_t>(length), query.cursor);
+    for (int i = 0; i < length; ++i)
+        placeAlongAxis(places[static_cast<std::size_t>(i)], query.axes[across],
+                       cellMiddle(query.shown[across], i, length), info);
+    const auto columns = static_cast<std::size_t>(query.cells.x);
+    for (std::size_t c = 0; c < query.channels.size(); ++c) {
+        const auto store = [&](std::size_t k, std::size_t i, double value) {
+            out.values[c][own == 0 ? i * columns + k : k * columns + i] = value;
+        };
+        if (isMixedBetween(source, query.channels[c])) {
+            const LineOverTimes line(source, query.channels[c], places, pairs, progress);
+            for (std::size_t k = 0; k < pairs.size(); ++k)
+                for (std::size_t i = 0; i < places.size(); ++i) store(k, i, line.at(pairs[k], i));
+            continue;
+        }
+        parallelFor(pairs.size(), [&](std::size_t k) {
+            progress.advance(static_cast<double>(c) / static_cast<double>(query.channels.size()));
+            const auto found = volume::probeAlong(source, query.channels[c], places, pairs[k]);
+            for (std::size_t i = 0; i < found.size(); ++i) store(k, i, found[i].interpolated.value_or(std::nan("")));
+        });
+    }
 }
 
 } // namespace
 
-double middleOf(Range range, int cell, int cells) {
+double cellMiddle(Range range, int cell, int cells) {
     return std::lerp(range.lo, range.hi, (cell + 0.5) / cells);
 }
 
@@ -70,7 +167,7 @@ glm::dvec3 HyperValues::positionOf(glm::ivec2 cell, const volume::AxisMaps& maps
         const AxisPlaces& axis = query.axes[static_cast<std::size_t>(k)];
         if (!axis.ofTime())
             position[axis.dimension] =
-                axis.at(middleOf(query.shown[static_cast<std::size_t>(k)], cell[k], query.cells[k]), maps);
+                axis.at(cellMiddle(query.shown[static_cast<std::size_t>(k)], cell[k], query.cells[k]), maps);
     }
     return position;
 }
@@ -94,34 +191,12 @@ HyperQuery panelQuery(const HyperAxis& across, const HyperAxis& up, std::vector<
 }
 
 HyperValues readPanel(const volume::BrickSource& source, const HyperQuery& query, const Progress& progress) {
-    const volume::DatasetInfo& info = source.info();
     HyperValues out{query, {}};
-    const auto [columns, rows] =
-        std::pair{static_cast<std::size_t>(query.cells.x), static_cast<std::size_t>(query.cells.y)};
-    out.values.assign(query.channels.size(), std::vector<double>(columns * rows, std::nan("")));
-    // A line is of one time: along the axis of time there are as many lines as cells.
-    const bool upright = query.axes[0].ofTime();
-    const std::size_t line = upright ? 0 : 1, across = 1 - line;
-    const int lines = query.cells[static_cast<int>(line)], length = query.cells[static_cast<int>(across)];
-    std::atomic<int> done = 0;
-    parallelFor(static_cast<std::size_t>(lines), [&](std::size_t k) {
-        const double place = middleOf(query.shown[line], static_cast<int>(k), lines);
-        glm::dvec3 start = query.cursor;
-        placeAlongAxis(start, query.axes[line], place, info);
-        const double time = query.axes[line].ofTime() ? query.axes[line].at(place, info.lattice.axes) : query.time;
-        std::vector<glm::dvec3> places(static_cast<std::size_t>(length), start);
-        for (int i = 0; i < length; ++i)
-            placeAlongAxis(places[static_cast<std::size_t>(i)], query.axes[across],
-                           middleOf(query.shown[across], i, length), info);
-        for (std::size_t c = 0; c < query.channels.size(); ++c) {
-            const auto found =
-                volume::probeAlong(source, query.channels[c], places, volume::timesAround(info.times, time));
-            for (std::size_t i = 0; i < found.size(); ++i)
-                out.values[c][upright ? i * columns + k : k * columns + i] =
-                    found[i].interpolated.value_or(std::nan(""));
-        }
-        progress.advance(static_cast<double>(++done) / lines);
-    });
+    out.values.assign(query.channels.size(), std::vector<double>(static_cast<std::size_t>(query.cells.x) *
+                                                                     static_cast<std::size_t>(query.cells.y),
+                                                                 std::nan("")));
+    const bool overTime = query.axes[0].ofTime() || query.axes[1].ofTime();
+    overTime ? readOverTime(source, out, progress) : readInSpace(source, out, progress);
     return out;
 }
 
@@ -221,7 +296,7 @@ std::vector<std::uint8_t> panelImage(const volume::DatasetInfo& info, const Sess
                                      interest.holder(of, position));
             }
             std::uint8_t* pixel = &rgba[(row * static_cast<std::size_t>(cells.x) + static_cast<std::size_t>(i)) * 4];
-            for (int k = 0; k < 4; ++k) pixel[k] = byteOf(color[k]);
+            for (int k = 0; k < 4; ++k) pixel[k] = panelByte(color[k]);
         }
     });
     return rgba;

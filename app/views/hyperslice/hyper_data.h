@@ -28,7 +28,7 @@ struct HyperQuery {
 };
 
 /// Places of cells: the middles of even parts of a range.
-double middleOf(Range range, int cell, int cells);
+double cellMiddle(Range range, int cell, int cells);
 
 struct HyperValues {
     HyperQuery query;

@@ -15,9 +15,9 @@ namespace tessera::app {
 
 namespace {
 
-constexpr int kFewCells = 96, kManyCells = 384; ///< of a panel on a page, along an edge
-constexpr double kPerPoint = 2;                 ///< cells, where the size of the page is given
-constexpr int kRowsOfTable = 64;                ///< of a panel, along an edge
+constexpr int kFewPageCells = 96, kManyPageCells = 384; ///< of a panel on a page, along an edge
+constexpr double kCellsOfPoint = 2;                     ///< cells, where the size of the page is given
+constexpr int kRowsOfTable = 64;                        ///< of a panel, along an edge
 constexpr int kProfilePlaces = 257;
 
 PlotAxis pageAxis(const HyperAxis& axis) {
@@ -96,7 +96,7 @@ void addPanelRows(TableRows& rows, const volume::DatasetInfo& info, const std::s
                 const auto axis = static_cast<std::size_t>(k);
                 if (panel.query.axes[axis].ofTime())
                     time = panel.query.axes[axis].at(
-                        middleOf(panel.query.shown[axis], k == 0 ? i : j, panel.query.cells[k]), info.lattice.axes);
+                        cellMiddle(panel.query.shown[axis], k == 0 ? i : j, panel.query.cells[k]), info.lattice.axes);
             }
             rows.add(name, panel.positionOf({i, j}, info.lattice.axes), time, panel.at(0, {i, j}));
         }
@@ -120,8 +120,8 @@ Range profileRange(const Session& session, const volume::DatasetInfo& info, int 
     return paddedRange(vis::effectiveRange(transferOf(session, own.name), info.channelRange(own)), 0.05);
 }
 
-std::vector<std::string> placeTexts(const std::vector<HyperAxis>& axes, const Session& session,
-                                    const volume::DatasetInfo& info) {
+std::vector<std::string> hyperPlaces(const std::vector<HyperAxis>& axes, const Session& session,
+                                     const volume::DatasetInfo& info) {
     std::vector<std::string> texts;
     const AxisLabels labels = axisLabels(session, info);
     for (int axis = 0; axis < 3; ++axis) {
@@ -164,7 +164,7 @@ VectorPage hyperPage(const volume::BrickSource& source, const HyperMatrix& matri
         plot.cursorX = placeAtCursor(matrix.axes[column], matrix.session, info);
         plot.cursorY = placeAtCursor(matrix.axes[row], matrix.session, info);
     });
-    std::vector<std::string> words = placeTexts(matrix.axes, matrix.session, info);
+    std::vector<std::string> words = hyperPlaces(matrix.axes, matrix.session, info);
     if (matrix.content.lined) words.push_back(contourTitle(info.channel(*matrix.content.lined), matrix.content.levels));
     if (count > 1) plots[count - 1] = wordsPlot(words);
     const bool labels = info.parameters[static_cast<std::size_t>(own.parameter)].categorical;
@@ -174,7 +174,7 @@ VectorPage hyperPage(const volume::BrickSource& source, const HyperMatrix& matri
     const int columns = static_cast<int>(count);
     const glm::dvec2 size = plotArea(plots, columns, form);
     const glm::ivec2 cells =
-        glm::clamp(form.size.x > 0 ? glm::ivec2(size * kPerPoint) : glm::ivec2(0), kFewCells, kManyCells);
+        glm::clamp(form.size.x > 0 ? glm::ivec2(size * kCellsOfPoint) : glm::ivec2(0), kFewPageCells, kManyPageCells);
     double done = 0;
     const double each = 2.0 / static_cast<double>(std::max<std::size_t>(2, count * (count - 1)));
     panels([&](Plot& plot, std::size_t column, std::size_t row) {

@@ -27,8 +27,8 @@ VectorPage hyperPage(const volume::BrickSource& source, const HyperMatrix& matri
 Table hyperTable(const volume::BrickSource& source, const HyperMatrix& matrix, const Progress& progress = {});
 
 /// Where the cross-hair is, an axis each: "x = 1.2 mm"; what is no axis of the matrix, too.
-std::vector<std::string> placeTexts(const std::vector<HyperAxis>& axes, const Session& session,
-                                    const volume::DatasetInfo& info);
+std::vector<std::string> hyperPlaces(const std::vector<HyperAxis>& axes, const Session& session,
+                                     const volume::DatasetInfo& info);
 
 /// The values that the profiles of a parameter stand between.
 Range profileRange(const Session& session, const volume::DatasetInfo& info, int channel);

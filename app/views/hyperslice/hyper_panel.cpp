@@ -15,21 +15,21 @@ namespace tessera::app {
 
 namespace {
 
-constexpr int kFewCells = 16, kMostCells = 256, kCellStep = 8; ///< of a picture, along an edge
-constexpr int kCoarser = 3;                                    ///< cells of the first answer are so much larger
-constexpr float kSnap = 0.35f;                                 ///< em: a stored time so near is meant
+constexpr int kFewPanelCells = 16, kMostPanelCells = 256, kCellStep = 8; ///< of a picture, along an edge
+constexpr int kCoarser = 3;          ///< cells of the first answer are so much larger
+constexpr float kSnapToTime = 0.35f; ///< em: a stored time so near is meant
 constexpr ImU32 kLineInk = IM_COL32(12, 12, 12, 245), kLineHalo = IM_COL32(255, 255, 255, 110),
                 kLineTextHalo = IM_COL32(255, 255, 255, 150);
 
 /// As many cells as pixels, in steps so that a pane that is being resized keeps its answers.
 int cellsFor(float pixels) {
     const int steps = static_cast<int>(std::ceil(pixels / kCellStep));
-    return std::clamp(steps * kCellStep, kFewCells, kMostCells);
+    return std::clamp(steps * kCellStep, kFewPanelCells, kMostPanelCells);
 }
 
-std::shared_ptr<const HyperValues> answerOf(ViewContext& context, HyperPanelState& state,
-                                            const std::shared_ptr<const volume::BrickSource>& source,
-                                            const HyperContent& content, const HyperPanel& panel) {
+std::shared_ptr<const HyperValues> panelAnswer(ViewContext& context, HyperPanelState& state,
+                                               const std::shared_ptr<const volume::BrickSource>& source,
+                                               const HyperContent& content, const HyperPanel& panel) {
     const HyperQuery query =
         panelQuery(panel.across, panel.up, content.channels,
                    {cellsFor(panel.frame.width()), cellsFor(panel.frame.height())}, context.session, source->info());
@@ -44,8 +44,9 @@ std::shared_ptr<const HyperValues> answerOf(ViewContext& context, HyperPanelStat
 }
 
 /// The picture over the part that it was read for: after a zoom the next one is still being read.
-void drawCells(ViewContext& context, HyperPanelState& state, const volume::DatasetInfo& info,
-               const HyperContent& content, const PlotFrame& frame, const std::shared_ptr<const HyperValues>& values) {
+void drawPanelCells(ViewContext& context, HyperPanelState& state, const volume::DatasetInfo& info,
+                    const HyperContent& content, const PlotFrame& frame,
+                    const std::shared_ptr<const HyperValues>& values) {
     const volume::Channel own = info.channel(content.channel);
     const vis::TransferFunction& function = transferOf(context.session, own.name);
     const HyperPanelState::Look look{function, vis::effectiveRange(function, info.channelRange(own)),
@@ -93,7 +94,7 @@ void layOutLines(HyperPanelState& state, const volume::DatasetInfo& info, const 
     }
 }
 
-void drawLines(ImDrawList& draw, const HyperPanelState& state) {
+void drawPanelLines(ImDrawList& draw, const HyperPanelState& state) {
     const float width = std::max(1.2f, em() * 0.09f);
     for (const auto& [color, thick] : {std::pair{kLineHalo, width * 2.6f}, std::pair{kLineInk, width}})
         for (const std::vector<ImVec2>& piece : state.pieces)
@@ -110,7 +111,7 @@ void drawLines(ImDrawList& draw, const HyperPanelState& state) {
 }
 
 /// Lenses and brushes where they cross a panel that is a plane of space.
-void drawOutlines(const ViewContext& context, const volume::DatasetInfo& info, const HyperPanel& panel) {
+void drawPanelOutlines(const ViewContext& context, const volume::DatasetInfo& info, const HyperPanel& panel) {
     const int right = panel.across.along.dimension, up = panel.up.along.dimension;
     if (panel.across.along.ofTime() || panel.up.along.ofTime()) return;
     const int normal = 3 - right - up;
@@ -127,7 +128,7 @@ void drawOutlines(const ViewContext& context, const volume::DatasetInfo& info, c
 /// The place under the mouse, in an axis' data; a stored time where that is near.
 double placeUnder(const HyperAxis& axis, double place, double perPixel) {
     return snappedPlace(axis, std::clamp(place, axis.shown.lo, axis.shown.hi),
-                        perPixel * static_cast<double>(em() * kSnap));
+                        perPixel * static_cast<double>(em() * kSnapToTime));
 }
 
 void zoomAxis(HyperSliceView& view, const HyperAxis& axis, double about, double factor, double shift) {
@@ -152,7 +153,7 @@ void zoomAxes(HyperSliceView& view, const HyperAxis& across, const HyperAxis* up
 }
 
 /// The box of a drag within the panel.
-std::pair<ImVec2, ImVec2> boxOf(const HyperDrag& drag, const PlotFrame& frame, bool profile) {
+std::pair<ImVec2, ImVec2> dragBox(const HyperDrag& drag, const PlotFrame& frame, bool profile) {
     const auto inside = [&](ImVec2 at) {
         return ImVec2{std::clamp(at.x, frame.min.x, frame.max.x), std::clamp(at.y, frame.min.y, frame.max.y)};
     };
@@ -164,7 +165,7 @@ std::pair<ImVec2, ImVec2> boxOf(const HyperDrag& drag, const PlotFrame& frame, b
 
 void showBox(HyperSliceView& view, const HyperDrag& drag, const HyperAxis& across, const HyperAxis* up,
              const PlotFrame& frame) {
-    const auto [lo, hi] = boxOf(drag, frame, !up);
+    const auto [lo, hi] = dragBox(drag, frame, !up);
     const float least = em() * 0.4f; // a click is no box
     if (hi.x - lo.x < least || hi.y - lo.y < least) return;
     const glm::dvec2 from = frame.data({lo.x, hi.y}), to = frame.data({hi.x, lo.y});
@@ -180,19 +181,19 @@ void drawHyperPanel(ViewContext& context, HyperPanelState& state,
     const volume::DatasetInfo& info = source->info();
     const PlotFrame& frame = panel.frame;
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const auto values = answerOf(context, state, source, content, panel);
+    const auto values = panelAnswer(context, state, source, content, panel);
     draw.PushClipRect(frame.min, frame.max, true);
     if (values) {
-        drawCells(context, state, info, content, frame, values);
+        drawPanelCells(context, state, info, content, frame, values);
         if (content.lined) {
             layOutLines(state, info, content, lineValues, frame, values);
-            drawLines(draw, state);
+            drawPanelLines(draw, state);
         }
     } else if (!state.answers.failure().empty()) {
         addTextWithBackdrop(draw, {frame.min.x + em() * 0.3f, frame.min.y}, {0, 0}, plotColors().faint, "no values");
         tellWhole(frame.min, frame.max, state.answers.failure(), "");
     }
-    if (context.decoration.outlines) drawOutlines(context, info, panel);
+    if (context.decoration.outlines) drawPanelOutlines(context, info, panel);
     if (context.decoration.cursor)
         drawCrosshair(draw, frame, placeAtCursor(panel.across, context.session, info),
                       placeAtCursor(panel.up, context.session, info), true);
@@ -260,7 +261,7 @@ void useHyperMouse(ViewContext& context, HyperSliceView& view, HyperDrag& drag, 
     if (drag.panel < 0) return;
     context.interacting = true;
     if (drag.box) {
-        const auto [lo, hi] = boxOf(drag, frame, !up);
+        const auto [lo, hi] = dragBox(drag, frame, !up);
         ImDrawList& front = *ImGui::GetForegroundDrawList();
         front.AddRectFilled(lo, hi, plotColors().brushFill);
         front.AddRect(lo, hi, plotColors().brush);

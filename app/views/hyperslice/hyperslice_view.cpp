@@ -15,7 +15,7 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kHyperCacheBytes = std::size_t(256) << 20; ///< a parameter of 64 x 64 x 256 samples at 24 times
-constexpr float kLeastCell = 1.6f, kGoodCell = 3;                ///< em, of a panel; below a good one there are no axes
+constexpr float kLeastPanel = 1.6f, kGoodPanel = 3;              ///< em, of a panel; below a good one there are no axes
 
 struct HyperSliceCache : ViewCache {
     std::vector<HyperPanelState> panels;     ///< row by row, of which those below the diagonal are used
@@ -147,8 +147,8 @@ public:
     void draw(const Readout& readout) {
         values_ = profileRange(context_.session, info_, content_.channel);
         HyperLayout layout = hyperLayout(axes_, values_, context_.decoration.axes);
-        if (layout.least() < em() * kGoodCell) layout = hyperLayout(axes_, values_, false);
-        if (layout.least() < em() * kLeastCell)
+        if (layout.least() < em() * kGoodPanel) layout = hyperLayout(axes_, values_, false);
+        if (layout.least() < em() * kLeastPanel)
             return drawHint("Not enough room", "Enlarge the pane, or show fewer axes.");
         cache_.panels.resize(axes_.size() * axes_.size());
         cache_.profiles.resize(axes_.size());
@@ -229,7 +229,7 @@ private:
             drawContourNote(contourTitle(info_.channel(*content_.lined), content_.levels));
         if (context_.decoration.cursor) {
             std::string whole;
-            for (const std::string& text : placeTexts(axes_, context_.session, info_))
+            for (const std::string& text : hyperPlaces(axes_, context_.session, info_))
                 whole += (whole.empty() ? "" : "   ") + text;
             ImGui::PushTextWrapPos(0);
             ImGui::TextUnformatted(wrappedAtSpaces(whole, hi.x - lo.x).c_str());
