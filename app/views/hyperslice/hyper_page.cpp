@@ -120,8 +120,7 @@ Range profileRange(const Session& session, const volume::DatasetInfo& info, int 
     return paddedRange(vis::effectiveRange(transferOf(session, own.name), info.channelRange(own)), 0.05);
 }
 
-std::vector<std::string> hyperPlaces(const std::vector<HyperAxis>& axes, const Session& session,
-                                     const volume::DatasetInfo& info) {
+std::vector<std::string> hyperPlaces(const Session& session, const volume::DatasetInfo& info) {
     std::vector<std::string> texts;
     const AxisLabels labels = axisLabels(session, info);
     for (int axis = 0; axis < 3; ++axis) {
@@ -130,8 +129,13 @@ std::vector<std::string> hyperPlaces(const std::vector<HyperAxis>& axes, const S
         texts.push_back(label.name + " = " +
                         formatQuantity(session.cursor[axis] * label.unit.perUnit, label.unit.name, digits));
     }
-    if (info.times.size() < 2) return texts;
-    texts.push_back(timeText(info, session.time));
+    return texts;
+}
+
+std::vector<std::string> hyperTimes(const std::vector<HyperAxis>& axes, const Session& session,
+                                    const volume::DatasetInfo& info) {
+    if (info.times.size() < 2) return {};
+    std::vector<std::string> texts{timeText(info, session.time)};
     for (const HyperAxis& axis : axes)
         if (axis.along.ofTime() && axis.key != "time")
             texts.push_back(axis.label.name + " = " +
@@ -164,7 +168,8 @@ VectorPage hyperPage(const volume::BrickSource& source, const HyperMatrix& matri
         plot.cursorX = placeAtCursor(matrix.axes[column], matrix.session, info);
         plot.cursorY = placeAtCursor(matrix.axes[row], matrix.session, info);
     });
-    std::vector<std::string> words = hyperPlaces(matrix.axes, matrix.session, info);
+    std::vector<std::string> words = hyperPlaces(matrix.session, info);
+    for (std::string& text : hyperTimes(matrix.axes, matrix.session, info)) words.push_back(std::move(text));
     if (matrix.content.lined) words.push_back(contourTitle(info.channel(*matrix.content.lined), matrix.content.levels));
     if (count > 1) plots[count - 1] = wordsPlot(words);
     const bool labels = info.parameters[static_cast<std::size_t>(own.parameter)].categorical;

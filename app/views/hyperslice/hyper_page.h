@@ -26,9 +26,11 @@ VectorPage hyperPage(const volume::BrickSource& source, const HyperMatrix& matri
 /// the time and the parameter; NaN where it is absent. Throws Error, Cancelled.
 Table hyperTable(const volume::BrickSource& source, const HyperMatrix& matrix, const Progress& progress = {});
 
-/// Where the cross-hair is, an axis each: "x = 1.2 mm"; what is no axis of the matrix, too.
-std::vector<std::string> hyperPlaces(const std::vector<HyperAxis>& axes, const Session& session,
-                                     const volume::DatasetInfo& info);
+/// Where the cross-hair is in space, an axis each: "x = 1.2 mm".
+std::vector<std::string> hyperPlaces(const Session& session, const volume::DatasetInfo& info);
+/// The time, and the value of a quantity that is an axis; nothing for data with one time.
+std::vector<std::string> hyperTimes(const std::vector<HyperAxis>& axes, const Session& session,
+                                    const volume::DatasetInfo& info);
 
 /// The values that the profiles of a parameter stand between.
 Range profileRange(const Session& session, const volume::DatasetInfo& info, int channel);

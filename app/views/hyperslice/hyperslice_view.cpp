@@ -98,7 +98,7 @@ void drawHyperTools(ViewContext& context, HyperSliceView& view, const std::vecto
 struct HyperLayout {
     ImVec2 min, room, cell; ///< pixels; a panel with the gap beside it
     float left = 0, right = 0, bottom = 0, gap = 0;
-    bool numbered = true, titledBelow = false;
+    bool numbered = true;
     std::size_t count = 0;
 
     float least() const { return std::min(cell.x, cell.y) - gap; }
@@ -118,7 +118,6 @@ HyperLayout hyperLayout(const std::vector<HyperAxis>& axes, Range values, bool n
     out.room = {ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6) - em() * 0.3f};
     out.gap = std::round(em() * 0.4f);
     const auto count = static_cast<float>(std::max<std::size_t>(1, axes.size()));
-    out.titledBelow = out.room.y / count > em() * 5;
     out.left = em() * 0.3f;
     if (numbered) {
         for (std::size_t row = 1; row < axes.size(); ++row)
@@ -126,9 +125,8 @@ HyperLayout hyperLayout(const std::vector<HyperAxis>& axes, Range values, bool n
                                 axisRoom(AxisSide::Left, axes[row].shown, TitlePlace::Beside, axes[row].label.scale()));
         out.right = axisRoom(AxisSide::Left, values, TitlePlace::Beside);
         for (const HyperAxis& axis : axes)
-            out.bottom = std::max(out.bottom, axisRoom(AxisSide::Bottom, axis.shown,
-                                                       out.titledBelow ? TitlePlace::Beside : TitlePlace::Elsewhere,
-                                                       axis.label.scale()));
+            out.bottom =
+                std::max(out.bottom, axisRoom(AxisSide::Bottom, axis.shown, TitlePlace::Beside, axis.label.scale()));
     }
     out.cell = {(out.room.x - out.left - out.right + out.gap) / count, (out.room.y - out.bottom + out.gap) / count};
     return out;
@@ -195,21 +193,24 @@ private:
     /// Numbers on the outer axes, and of values at the right of each profile.
     void drawPanelAxes(const HyperLayout& layout, std::size_t column, std::size_t row, const PlotFrame& frame) {
         ImDrawList& draw = *ImGui::GetWindowDrawList();
+        const float room = layout.gap / 2 - 1; // numbers at the ends of neighbours stay apart
         if (row + 1 == axes_.size()) {
             const AxisLabel& label = axes_[column].label;
-            const float beside = column + 1 == axes_.size() ? layout.right : layout.gap;
-            drawAxis(draw, frame, AxisSide::Bottom, label.title(), label.unit.name, frame.min.x - layout.gap,
-                     frame.max.x + beside,
-                     {.inlineTitle = !layout.titledBelow, .ticks = label.ticks, .scale = label.scale()});
+            drawAxis(draw, frame, AxisSide::Bottom, label.title(), label.unit.name, frame.min.x - room,
+                     frame.max.x + room, {.ticks = label.ticks, .scale = label.scale()});
         }
         if (column == 0 && row > 0) {
             const AxisLabel& label = axes_[row].label;
-            drawAxis(draw, frame, AxisSide::Left, label.title(), label.unit.name, frame.min.y - layout.gap,
-                     frame.max.y + layout.gap, {.room = layout.left, .ticks = label.ticks, .scale = label.scale()});
+            drawAxis(draw, frame, AxisSide::Left, label.title(), label.unit.name, frame.min.y - room,
+                     frame.max.y + room, {.room = layout.left, .ticks = label.ticks, .scale = label.scale()});
         }
         if (row != column) return;
         const volume::Channel own = info_.channel(content_.channel);
-        drawRightAxis(draw, frame, own.name, own.unit, layout.right, 0);
+        const auto fits = [&](const std::string& text) {
+            return ImGui::CalcTextSize(text.c_str()).x <= frame.height();
+        };
+        const bool whole = fits(titleWithUnit(own.name, own.unit)); // the legend has the unit, too
+        drawRightAxis(draw, frame, fits(own.name) ? own.name : "", whole ? own.unit : "", layout.right, 0);
     }
 
     /// Legend, place and values in the half of the matrix above the diagonal.
@@ -228,12 +229,10 @@ private:
         if (context_.decoration.legend && content_.lined)
             drawContourNote(contourTitle(info_.channel(*content_.lined), content_.levels));
         if (context_.decoration.cursor) {
-            std::string whole;
-            for (const std::string& text : hyperPlaces(axes_, context_.session, info_))
-                whole += (whole.empty() ? "" : "   ") + text;
-            ImGui::PushTextWrapPos(0);
-            ImGui::TextUnformatted(wrappedAtSpaces(whole, hi.x - lo.x).c_str());
-            ImGui::PopTextWrapPos();
+            std::string over; // places in space are among the values
+            for (const std::string& text : hyperTimes(axes_, context_.session, info_))
+                over += (over.empty() ? "" : "   ") + text;
+            if (!over.empty()) ImGui::TextUnformatted(wrappedAtSpaces(over, hi.x - lo.x).c_str());
             const float left = ImGui::GetContentRegionAvail().y;
             if (left >= ImGui::GetTextLineHeight()) drawRunningReadout(context_, readout, left);
         }
