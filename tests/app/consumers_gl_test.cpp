@@ -100,7 +100,7 @@ constexpr Consumer kConsumers[] = {
     {"tesseract",       "F F . . . F F . . . . . . . F . . . . . F"},
     {"parallelCoordinates", ""},
     {"scatter3d",       ""},
-    {"hyperSlice",      "F F F . . . . . . . . . . . . F . . . . F"},
+    {"hyperSlice",      "F F F . . . . . . . . . . . . . . . . . F"},
     {"worthSeeing",     ""},
     {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
 };

@@ -337,7 +337,19 @@ TEST_F(HyperSlices, TablesAndPagesAreOfTheSource) {
     EXPECT_EQ(panels,
               (std::map<std::string, int>{
                   {"x, z", 4096}, {"x, falling", 4096}, {"z, falling", 4096}, {"x", 257}, {"z", 257}, {"falling", 4}}));
+    session.selection.brushes.resize(1);
+    session.selection.brushes[0].region = vis::BoxRegion{.center = {2, -1.4, 1}, .radius = {0.4, 0.2, 0.5}};
+    const HyperMatrix boxed{matrix.axes, matrix.content, false, session};
+    EXPECT_EQ(panelSections(session, info, matrix.axes[0].along, matrix.axes[1].along).size(), 1u);
+    EXPECT_TRUE(panelSections(session, info, matrix.axes[0].along, matrix.axes[2].along).empty());
+    const auto strokes = [](const VectorPage& drawn) {
+        return std::ranges::count_if(drawn.marks, [](const shapes::Mark& mark) {
+            return std::holds_alternative<shapes::Stroke>(mark.shape) ||
+                   std::holds_alternative<shapes::Polygon>(mark.shape);
+        });
+    };
     PageForm form;
+    EXPECT_GT(strokes(hyperPage(*source, boxed, form)), strokes(hyperPage(*source, matrix, form)));
     const VectorPage page = hyperPage(*source, matrix, form);
     int pictures = 0;
     std::set<std::string> words;
@@ -346,7 +358,8 @@ TEST_F(HyperSlices, TablesAndPagesAreOfTheSource) {
         if (const auto* each = std::get_if<shapes::Words>(&mark.shape)) words.insert(each->text);
     }
     EXPECT_EQ(pictures, 3 + 1) << "and the colours of the legend";
-    for (const char* word : {"x [mm]", "z [mm]", "falling [V]", "A [K]"}) EXPECT_TRUE(words.contains(word)) << word;
+    for (const char* word : {"x [mm]", "z [mm]", "falling [V]", "A [K]", "not to scale, z by cells"})
+        EXPECT_TRUE(words.contains(word)) << word;
 }
 
 } // namespace

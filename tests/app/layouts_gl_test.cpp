@@ -87,7 +87,7 @@ const std::vector<Shipped>& shipped() {
         {"hyperslice",
          "data hyperSlice layers timeline transfer volume",
          "H2 [mol/m³] 24.48 .. 33.11",
-         {{"hyperSlice", Cold, 0.2}, {"hyperSlice", Green, 0.05}}},
+         {{"hyperSlice", Cold, 0.103}, {"hyperSlice", Green, 0.0515}}},
         {"illustration",
          "data layers timeline transfer volume",
          "O2 [mol/m³] = 2.5; T [K] 353.17 .. 356.60",

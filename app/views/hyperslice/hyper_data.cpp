@@ -323,4 +323,17 @@ std::vector<volume::ContourLine> panelLines(const volume::DatasetInfo& info, con
     return lines;
 }
 
+PicturePlane planeOfPanel(const Session& session, const volume::DatasetInfo& info, const AxisPlaces& across,
+                          const AxisPlaces& up) {
+    const int normal = 3 - across.dimension - up.dimension;
+    return planeAcross(across.dimension, up.dimension, normal,
+                       info.lattice.axes.toSheet(normal, session.cursor[normal]));
+}
+
+std::vector<PlaneSection> panelSections(const Session& session, const volume::DatasetInfo& info,
+                                        const AxisPlaces& across, const AxisPlaces& up) {
+    if (across.ofTime() || up.ofTime()) return {};
+    return planeSections(session, info, planeOfPanel(session, info, across, up));
+}
+
 } // namespace tessera::app

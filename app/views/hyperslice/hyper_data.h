@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/planes/contour_data.h"
+#include "app/tools/plane_sections.h"
 #include "app/views/hyperslice/hyper_axes.h"
 #include "volume/base/progress.h"
 #include "volume/bricks/brick_source.h"
@@ -89,5 +90,12 @@ std::vector<std::uint8_t> panelImage(const volume::DatasetInfo& info, const Sess
 /// Contour lines of a panel, as places of its axes; none between regions that are kept apart.
 std::vector<volume::ContourLine> panelLines(const volume::DatasetInfo& info, const HyperContent& content,
                                             const HyperValues& values);
+
+/// The plane of the data that a panel of two axes of space is; its directions run along them.
+PicturePlane planeOfPanel(const Session& session, const volume::DatasetInfo& info, const AxisPlaces& across,
+                          const AxisPlaces& up);
+/// Outlines of lenses and brushes there; none with an axis of time.
+std::vector<PlaneSection> panelSections(const Session& session, const volume::DatasetInfo& info,
+                                        const AxisPlaces& across, const AxisPlaces& up);
 
 } // namespace tessera::app

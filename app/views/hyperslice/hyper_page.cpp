@@ -19,6 +19,7 @@ constexpr int kFewPageCells = 96, kManyPageCells = 384; ///< of a panel on a pag
 constexpr double kCellsOfPoint = 2;                     ///< cells, where the size of the page is given
 constexpr int kRowsOfTable = 64;                        ///< of a panel, along an edge
 constexpr int kProfilePlaces = 257;
+constexpr float kOnWhitePage = 0.7f; ///< of light colours, which vanish on white
 
 PlotAxis pageAxis(const HyperAxis& axis) {
     return {
@@ -48,6 +49,19 @@ void addPanelLines(Plot& plot, const HyperMatrix& matrix, const std::vector<volu
     for (const std::vector<glm::dvec2>& piece : linesAround(onPage, labels)) {
         plot.contours.emplace_back();
         for (const glm::dvec2& point : piece) plot.contours.back().push_back(data(point));
+    }
+}
+
+/// Lenses and brushes where they cross a panel that is a plane of space.
+void addSections(Plot& plot, const Session& session, const volume::DatasetInfo& info, const HyperAxis& across,
+                 const HyperAxis& up, bool dark) {
+    for (const PlaneSection& section : panelSections(session, info, across.along, up.along)) {
+        PlotOutline& outline = plot.outlines.emplace_back();
+        const glm::dvec2 perUnit(across.along.perUnit, up.along.perUnit);
+        for (const glm::dvec2& point : section.outline) outline.points.push_back(point * perUnit);
+        outline.color = glm::vec4(section.color * (dark ? 1 : kOnWhitePage), section.faint ? 0.35f : 1.0f);
+        outline.dashed = section.dashed;
+        if (section.middle) outline.dot = *section.middle * perUnit;
     }
 }
 
@@ -120,6 +134,16 @@ Range profileRange(const Session& session, const volume::DatasetInfo& info, int 
     return paddedRange(vis::effectiveRange(transferOf(session, own.name), info.channelRange(own)), 0.05);
 }
 
+std::string hyperScale(const std::vector<HyperAxis>& axes, const volume::DatasetInfo& info) {
+    volume::AxisMaps maps;
+    for (const HyperAxis& axis : axes)
+        if (!axis.along.ofTime())
+            maps.of[static_cast<std::size_t>(axis.along.dimension)] =
+                info.lattice.axes.of[static_cast<std::size_t>(axis.along.dimension)];
+    const std::string cells = stretchText(glm::dvec3(1), maps);
+    return "not to scale" + (cells.empty() ? "" : ", " + cells);
+}
+
 std::vector<std::string> hyperPlaces(const Session& session, const volume::DatasetInfo& info) {
     std::vector<std::string> texts;
     const AxisLabels labels = axisLabels(session, info);
@@ -170,6 +194,7 @@ VectorPage hyperPage(const volume::BrickSource& source, const HyperMatrix& matri
     });
     std::vector<std::string> words = hyperPlaces(matrix.session, info);
     for (std::string& text : hyperTimes(matrix.axes, matrix.session, info)) words.push_back(std::move(text));
+    words.push_back(hyperScale(matrix.axes, info));
     if (matrix.content.lined) words.push_back(contourTitle(info.channel(*matrix.content.lined), matrix.content.levels));
     if (count > 1) plots[count - 1] = wordsPlot(words);
     const bool labels = info.parameters[static_cast<std::size_t>(own.parameter)].categorical;
@@ -189,6 +214,7 @@ VectorPage hyperPage(const volume::BrickSource& source, const HyperMatrix& matri
             progress.part(done, done + each));
         done += each;
         plot.image = {cells.x, cells.y, panelImage(info, matrix.session, matrix.content, values)};
+        addSections(plot, matrix.session, info, matrix.axes[column], matrix.axes[row], form.dark);
         addPanelLines(plot, matrix, panelLines(info, matrix.content, values), size, form.text);
     });
     return plotPage(plots, columns, form);

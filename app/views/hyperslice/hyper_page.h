@@ -32,6 +32,9 @@ std::vector<std::string> hyperPlaces(const Session& session, const volume::Datas
 std::vector<std::string> hyperTimes(const std::vector<HyperAxis>& axes, const Session& session,
                                     const volume::DatasetInfo& info);
 
+/// That the panels are not to scale, and which axes are drawn by cells: "not to scale, z by cells".
+std::string hyperScale(const std::vector<HyperAxis>& axes, const volume::DatasetInfo& info);
+
 /// The values that the profiles of a parameter stand between.
 Range profileRange(const Session& session, const volume::DatasetInfo& info, int channel);
 

@@ -112,17 +112,15 @@ void drawPanelLines(ImDrawList& draw, const HyperPanelState& state) {
 
 /// Lenses and brushes where they cross a panel that is a plane of space.
 void drawPanelOutlines(const ViewContext& context, const volume::DatasetInfo& info, const HyperPanel& panel) {
-    const int right = panel.across.along.dimension, up = panel.up.along.dimension;
-    if (panel.across.along.ofTime() || panel.up.along.ofTime()) return;
-    const int normal = 3 - right - up;
-    const PicturePlane plane =
-        planeAcross(right, up, normal, info.lattice.axes.toSheet(normal, context.session.cursor[normal]));
+    const AxisPlaces &across = panel.across.along, &up = panel.up.along;
+    const std::vector<PlaneSection> sections = panelSections(context.session, info, across, up);
+    if (sections.empty()) return;
     const PlaneFrame frame{panel.frame,
-                           plane,
-                           {panel.across.along.perUnit, panel.up.along.perUnit},
+                           planeOfPanel(context.session, info, across, up),
+                           {across.perUnit, up.perUnit},
                            vis::worldFrame(info, context.session.stretch),
                            info.bounds};
-    drawPlaneSections(*ImGui::GetWindowDrawList(), frame, planeSections(context.session, info, plane));
+    drawPlaneSections(*ImGui::GetWindowDrawList(), frame, sections);
 }
 
 /// The place under the mouse, in an axis' data; a stored time where that is near.

@@ -1,4 +1,3 @@
-#include "app/pane/axes3d.h"
 #include "app/pane/view_parts.h"
 #include "app/planes/plane_pane.h"
 #include "app/tools/brush_list.h"
@@ -53,13 +52,7 @@ void chooseAxes(ToolRow& tools, HyperSliceView& view, const std::vector<HyperAxi
 
 /// Panels are not to scale, which they always say.
 void drawScales(ToolRow& tools, const std::vector<HyperAxis>& axes, const volume::DatasetInfo& info) {
-    volume::AxisMaps maps;
-    for (const HyperAxis& axis : axes)
-        if (!axis.along.ofTime())
-            maps.of[static_cast<std::size_t>(axis.along.dimension)] =
-                info.lattice.axes.of[static_cast<std::size_t>(axis.along.dimension)];
-    const std::string cells = stretchText(glm::dvec3(1), maps);
-    const std::string text = "not to scale" + (cells.empty() ? "" : ", " + cells);
+    const std::string text = hyperScale(axes, info);
     if (!tools.nextText(ImGui::CalcTextSize(text.c_str()).x)) return;
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", text.c_str());
