@@ -100,9 +100,9 @@ constexpr Consumer kConsumers[] = {
     {"tesseract",       "F F . . . F F . . . . . . . F . . . . . F"},
     {"parallelCoordinates", ""},
     {"scatter3d",       ""},
-    {"hyperSlice",      ""},
+    {"hyperSlice",      "F F F . . . . . . . . . . . . . . . . . F"},
     {"hierarchy",       "F F . . . F . . . . . . . . . . . . . . F"},
-    {"worthSeeing",     ""},
+    {"worthSeeing",     "F . . . . . . . . . . . . . . F . . . . F"},
     {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
 };
 // clang-format on

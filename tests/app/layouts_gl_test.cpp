@@ -84,6 +84,10 @@ const std::vector<Shipped>& shipped() {
          "data layers slices timeline transfer volume",
          "O2 [mol/m³] = 2.5; H2 [mol/m³] = 26.5; T [K] 353.17 .. 356.60",
          {{"volume", Orange, 0.0708}, {"volume", Cold, 0.0263}}},
+        {"hyperslice",
+         "data hyperSlice layers timeline transfer volume",
+         "H2 [mol/m³] 24.48 .. 33.11",
+         {{"hyperSlice", Cold, 0.103}, {"hyperSlice", Green, 0.0515}}},
         {"illustration",
          "data layers timeline transfer volume",
          "O2 [mol/m³] = 2.5; T [K] 353.17 .. 356.60",
@@ -226,6 +230,7 @@ TEST_P(Layouts, AreDrawnWithoutOpenGl) {
     std::vector<std::string> panes = {"volume", "tesseract", "shadowCube"};
     if (name == "overview") panes.insert(panes.end(), {"slices", "scatterMatrix"});
     if (name == "compareTechniques") panes.push_back("compare");
+    if (name == "hyperslice") panes.push_back("hyperSlice");
     PictureMaker without({.openGl = false});
     for (const std::string& pane : panes) {
         if (!session().views.contains(pane)) continue;
