@@ -231,7 +231,7 @@ Findings placesOf(const WorthSamples& samples, std::size_t channel, std::size_t 
         if (found.size() > kMostPlaces) found.resize(kMostPlaces);
         all.insert(all.end(), found.begin(), found.end());
     }
-    std::ranges::stable_sort(all, [](const Finding& a, const Finding& b) { return a.strength > b.strength; });
+    // Outliers are first: their borders jump, too.
     for (const Finding& each : all) {
         const bool known = std::ranges::any_of(out.found, [&](const Finding& other) {
             for (int axis = 0; axis < 3; ++axis)

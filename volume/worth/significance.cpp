@@ -79,7 +79,8 @@ double correlationTail(double r, double samples) {
 double expectedBeyond(std::span<const float> sorted, double value, double samples, double least) {
     if (sorted.empty()) return samples;
     const double median = tailQuantile(sorted, 0.5), upper = tailQuantile(sorted, 0.75);
-    const double scale = std::max({(upper - median) / std::log(2.0), least, 1e-300});
+    constexpr double kHeavier = 2;
+    const double scale = std::max({kHeavier * (upper - median) / std::log(2.0), least, 1e-300});
     return value <= median ? samples : samples * 0.5 * std::exp(-(value - median) / scale);
 }
 

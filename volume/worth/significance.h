@@ -20,9 +20,10 @@ double kolmogorovTail(double distance, double samples);
 /// Two-sided p-value of a Pearson correlation of so many independent samples; 1 below 4.
 double correlationTail(double r, double samples);
 
-/// How many of `samples` values are expected as far out as `value` by chance, if the tail is exponential between its
-/// median and its upper quartile: more than in normal or uniform noise, so that these are never surprising. `sorted`:
-/// distances from the middle, all of at least 0, rising. `least`: of the scale of the tail.
+/// How many of `samples` values are expected as far out as `value` by chance, if the tail is exponential, and twice as
+/// wide as between its median and its upper quartile: more than in normal or uniform noise and in squares of it, so
+/// that these are never surprising. `sorted`: distances from the middle, all of at least 0, rising. `least`: of the
+/// scale of the tail.
 double expectedBeyond(std::span<const float> sorted, double value, double samples, double least);
 
 /// The least false discovery rate at which each test is a finding, for any number of tests whose p-values rise or fall
