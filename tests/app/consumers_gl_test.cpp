@@ -98,6 +98,10 @@ constexpr Consumer kConsumers[] = {
     {"oblique",         "F F F F . . . . . . . . . . . F . . . . F"},
     {"shadowCube",      "F F F F F F F F F F F F F . F . . . . . F"},
     {"tesseract",       "F F . . . F F . . . . . . . F . . . . . F"},
+    {"parallelCoordinates", ""},
+    {"scatter3d",       ""},
+    {"hyperSlice",      ""},
+    {"worthSeeing",     "F . . . . . . . . . . . . . . F . . . . F"},
     {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
 };
 // clang-format on
