@@ -118,7 +118,7 @@ TEST(Worth, EachKindOpensItsView) {
     EXPECT_TRUE(session.selection == selected) << "what it is about stays selected";
     Finding region{.kind = FindingKind::Region, .region = 4};
     EXPECT_TRUE(std::get<StatisticsView>(session.views.at(openFinding(session, info, region, 3, "worth"))).byRegion);
-    EXPECT_TRUE(sessionFromJson(toJson(session)).session == session) << "all of it is saved";
+    EXPECT_TRUE(sessionFromJson(toJson(session), "") == session) << "all of it is saved";
 }
 
 } // namespace
