@@ -101,7 +101,7 @@ constexpr Consumer kConsumers[] = {
     {"parallelCoordinates", ""},
     {"scatter3d",       ""},
     {"hyperSlice",      ""},
-    {"worthSeeing",     "F . . . . . . . . . . . . . . F . . . . F"},
+    {"worthSeeing",     ""},
     {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
 };
 // clang-format on
