@@ -10,7 +10,9 @@ namespace {
 class WorthHands : public Hands {};
 
 TEST_F(WorthHands, AClickOpensTheViewAsOneStep) {
-    show(WorthSeeingView{}, {520, 460});
+    WorthSeeingView all; // of formulas without events
+    all.falseDiscoveries = 0.5f;
+    show(all, {520, 460});
     const volume::DatasetInfo& info = workbench.numbers()->info();
     const WorthQuestion question =
         worthQuestion(session(), info, view<WorthSeeingView>(), chosenChannels(info, {}, 32));

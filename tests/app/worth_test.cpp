@@ -46,7 +46,7 @@ TEST(Worth, SentencesSayWhatWhereAndHowMuch) {
     const volume::WorthFindings answer = readWorth(plantedCell(), question, 0);
     std::string all;
     for (const Finding& each : answer.found) all += sentenceOf(each, question, info) + "\n";
-    EXPECT_NE(all.find("T: 371.6"), std::string::npos) << all;
+    EXPECT_NE(all.find("T: 371.59 K"), std::string::npos) << all;
     EXPECT_NE(all.find("x 1.10, y 0.65, z 12.1 mm"), std::string::npos) << all;
     EXPECT_NE(all.find("H2O jumps to 22"), std::string::npos) << all;
     const WorthQuestion when = asked(plantedSession(), WorthList::When);
