@@ -128,6 +128,7 @@ const std::vector<Shipped>& shipped() {
           {"tesseract", Cold, 0.0945},
           {"tesseract", Warm, 0.0615},
           {"volume", Green, 0.149}}},
+        {"worthSeeing", "data layers slices timeline transfer volume whatElse when worthSeeing", kTemperature, {}},
     };
     return layouts;
 }
