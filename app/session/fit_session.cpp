@@ -110,8 +110,13 @@ private:
                                         " is not in the data");
                     member.clear();
                 }
+            } else if constexpr (std::is_same_v<Member, std::vector<vis::GlyphPart>>) {
+                for (vis::GlyphPart& part : member)
+                    if (replace(part.channel)) part.range = {}; // the values of another parameter mean nothing
             }
         });
+        if constexpr (requires { technique.surfaceValue; })
+            if (technique.place == vis::GlyphPlace::Surface && technique.surface.empty()) technique.place = {};
         if constexpr (requires { technique.value; })
             if (const auto index = info_.findChannel(technique.channel); replaced && index) {
                 const Range range = info_.channelRange(channels_[static_cast<std::size_t>(*index)]);

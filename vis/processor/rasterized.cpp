@@ -20,6 +20,7 @@ struct Piece {
     Triangle::Box box;
     std::array<SurfacePoint, 3> corners;
     const SurfaceLayer* layer = nullptr;
+    glm::vec4 tint = kNoTint;
     bool line = false;
 
     SurfacePoint between(glm::dvec3 shares) const {
@@ -27,11 +28,46 @@ struct Piece {
     }
 };
 
+/// Triangles in the order in which they are drawn, in blocks, so that blocks can be filled at the same time.
+class Pieces {
+public:
+    static constexpr std::size_t kBlock = 4096; ///< at most, of one block
+    using Block = std::vector<Piece>;
+
+    /// Adds as many empty blocks; returns the first.
+    Block* addBlocks(std::size_t count) {
+        const std::size_t first = blocks_.size();
+        blocks_.resize(first + count);
+        return blocks_.data() + first;
+    }
+    /// Adds a triangle after all others.
+    void add(const Piece& piece) {
+        if (blocks_.empty() || blocks_.back().size() == kBlock) blocks_.emplace_back();
+        blocks_.back().push_back(piece);
+    }
+    const Piece& operator[](std::uint32_t number) const { return blocks_[number / kBlock][number % kBlock]; }
+    /// For each band of so many rows the numbers of the triangles that may cover some of it.
+    std::vector<std::vector<std::uint32_t>> inBands(int rows, std::size_t bands) const {
+        std::vector<std::vector<std::uint32_t>> out(bands);
+        for (std::size_t block = 0; block < blocks_.size(); ++block)
+            for (std::size_t i = 0; i < blocks_[block].size(); ++i) {
+                const Triangle::Box& box = blocks_[block][i].box;
+                for (int band = box.lo.y / rows; band <= (box.hi.y - 1) / rows; ++band)
+                    out[std::size_t(band)].push_back(std::uint32_t(block * kBlock + i));
+            }
+        return out;
+    }
+
+private:
+    std::vector<Block> blocks_;
+};
+
 /// Where points of the sheet of the data lie in the picture.
 class Placement {
 public:
-    Placement(const Camera& camera, const WorldFrame& frame, glm::ivec2 size)
-        : frame_(frame), size_(size), toClip_(projectionMatrix(camera, double(size.x) / size.y) * viewMatrix(camera)) {}
+    Placement(const Camera& camera, const WorldFrame& frame, glm::ivec2 size, glm::dvec2 jitter)
+        : frame_(frame), size_(size), jitter_(jitter),
+          toClip_(projectionMatrix(camera, double(size.x) / size.y) * viewMatrix(camera)) {}
 
     glm::dvec3 world(glm::dvec3 sheet) const { return frame_.sheetToWorld(sheet); }
     glm::dvec4 clip(glm::dvec3 world) const { return toClip_ * glm::dvec4(world, 1); }
@@ -40,43 +76,67 @@ public:
         return {(glm::dvec2(clip) + clip.w) * 0.5 * glm::dvec2(size_), clip.z, clip.w};
     }
     glm::ivec2 size() const { return size_; }
+    Triangle::Box box(const std::array<glm::dvec4, 3>& pixels) const { return Triangle::box(pixels, size_, jitter_); }
     const WorldFrame& frame() const { return frame_; }
 
 private:
     WorldFrame frame_;
     glm::ivec2 size_;
+    glm::dvec2 jitter_;
     glm::dmat4 toClip_;
 };
 
-void addPiece(const Placement& placement, const std::array<glm::dvec4, 3>& clip,
-              const std::array<SurfacePoint, 3>& corners, const SurfaceLayer& layer, bool line,
-              std::vector<Piece>& pieces) {
-    const Triangle triangle({placement.pixels(clip[0]), placement.pixels(clip[1]), placement.pixels(clip[2])});
-    const Triangle::Box box = triangle.box(placement.size());
-    if (box.lo.x >= box.hi.x || box.lo.y >= box.hi.y) return;
-    pieces.push_back({triangle, box, corners, &layer, line});
-}
-
-void addMesh(const Placement& placement, const volume::SurfaceMesh& mesh, const SurfaceLayer& layer,
-             std::vector<Piece>& pieces) {
-    for (const glm::uvec3& triangle : mesh.triangles) {
-        std::array<glm::dvec4, 3> clip;
+/// Triangles [begin, end) of a mesh; `pixels`: its vertices in the picture.
+void fillBlock(const Placement& placement, const SurfaceLayer& layer, const std::vector<glm::dvec4>& pixels,
+               std::size_t begin, std::size_t end, Pieces::Block& block) {
+    const Geometry& geometry = *layer.layer->geometry;
+    const volume::SurfaceMesh& mesh = geometry.mesh;
+    for (std::size_t n = begin; n < end; ++n) {
+        const glm::uvec3 triangle = mesh.triangles[n];
+        const std::array<glm::dvec4, 3> at{pixels[triangle.x], pixels[triangle.y], pixels[triangle.z]};
+        const Triangle::Box box = placement.box(at);
+        if (box.empty()) continue;
         std::array<SurfacePoint, 3> corners;
         for (int i = 0; i < 3; ++i) {
-            const std::size_t v = triangle[i], to = std::size_t(i);
+            const std::size_t v = triangle[i];
             const glm::dvec3 normal = mesh.normals.empty() ? glm::dvec3(0) : glm::dvec3(mesh.normals[v]);
-            corners[to] = {.world = placement.world(mesh.origin + glm::dvec3(mesh.positions[v])),
-                           .direction = normal / placement.frame().scale,
-                           .value = mesh.scalars.empty() ? 0 : double(mesh.scalars[v])};
-            clip[to] = placement.clip(corners[to].world);
+            corners[std::size_t(i)] = {.world = placement.world(mesh.origin + glm::dvec3(mesh.positions[v])),
+                                       .direction = normal / placement.frame().scale,
+                                       .value = mesh.scalars.empty() ? 0 : double(mesh.scalars[v])};
         }
-        addPiece(placement, clip, corners, layer, false, pieces);
+        const glm::vec4 tint = geometry.tints.empty() ? kNoTint : geometry.tints[triangle.z];
+        block.push_back({Triangle(at), box, corners, &layer, tint, false});
     }
+}
+
+void addMesh(const Placement& placement, const SurfaceLayer& layer, Pieces& pieces) {
+    const volume::SurfaceMesh& mesh = layer.layer->geometry->mesh;
+    std::vector<glm::dvec4> pixels(mesh.positions.size());
+    parallelRanges(
+        pixels.size(),
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                pixels[i] =
+                    placement.pixels(placement.clip(placement.world(mesh.origin + glm::dvec3(mesh.positions[i]))));
+        },
+        1024);
+    const std::size_t count = mesh.triangles.size(), blocks = (count + Pieces::kBlock - 1) / Pieces::kBlock;
+    Pieces::Block* const first = pieces.addBlocks(blocks);
+    parallelFor(blocks, [&](std::size_t i) {
+        fillBlock(placement, layer, pixels, i * Pieces::kBlock, std::min((i + 1) * Pieces::kBlock, count), first[i]);
+    });
+}
+
+void addPiece(const Placement& placement, const std::array<glm::dvec4, 3>& clip,
+              const std::array<SurfacePoint, 3>& corners, const SurfaceLayer& layer, Pieces& pieces) {
+    const std::array<glm::dvec4, 3> at{placement.pixels(clip[0]), placement.pixels(clip[1]), placement.pixels(clip[2])};
+    const Triangle::Box box = placement.box(at);
+    if (!box.empty()) pieces.add({Triangle(at), box, corners, &layer, kNoTint, true});
 }
 
 /// A segment of a line as a strip of two triangles that faces the viewer. Twin: vis/shaders/geometry_lines.vert.glsl.
 void addSegment(const Placement& placement, const std::array<SurfacePoint, 2>& ends, const SurfaceLayer& layer,
-                std::vector<Piece>& pieces) {
+                Pieces& pieces) {
     const glm::dvec2 size(placement.size());
     const glm::dvec4 a = placement.clip(ends[0].world), b = placement.clip(ends[1].world);
     glm::dvec2 along = (glm::dvec2(b) / std::max(b.w, 1e-6) - glm::dvec2(a) / std::max(a.w, 1e-6)) * size;
@@ -91,11 +151,11 @@ void addSegment(const Placement& placement, const std::array<SurfacePoint, 2>& e
         corners[i] = ends[i % 2];
         corners[i].side = side;
     }
-    addPiece(placement, {clip[0], clip[1], clip[2]}, {corners[0], corners[1], corners[2]}, layer, true, pieces);
-    addPiece(placement, {clip[2], clip[1], clip[3]}, {corners[2], corners[1], corners[3]}, layer, true, pieces);
+    addPiece(placement, {clip[0], clip[1], clip[2]}, {corners[0], corners[1], corners[2]}, layer, pieces);
+    addPiece(placement, {clip[2], clip[1], clip[3]}, {corners[2], corners[1], corners[3]}, layer, pieces);
 }
 
-void addLines(const Placement& placement, const LineSet& lines, const SurfaceLayer& layer, std::vector<Piece>& pieces) {
+void addLines(const Placement& placement, const LineSet& lines, const SurfaceLayer& layer, Pieces& pieces) {
     std::size_t first = 0;
     for (const std::uint32_t end : lines.ends) {
         for (std::size_t i = first; i + 1 < std::min<std::size_t>(end, lines.positions.size()); ++i) {
@@ -123,12 +183,12 @@ struct Fragment {
 /// Rows [begin, end) of a picture.
 class Band {
 public:
-    Band(const SurfaceShading& shading, const std::vector<Piece>& pieces, glm::ivec2 size, glm::dvec2 jitter,
-         bool covers, int begin, int end)
+    Band(const SurfaceShading& shading, const Pieces& pieces, glm::ivec2 size, glm::dvec2 jitter, bool covers,
+         int begin, int end)
         : shading_(shading), pieces_(pieces), size_(size), jitter_(jitter), covers_(covers), begin_(begin), end_(end) {}
 
-    void draw(packet::PacketGeometry& out) {
-        for (std::size_t i = 0; i < pieces_.size(); ++i) collect(std::uint32_t(i));
+    void draw(std::span<const std::uint32_t> numbers, packet::PacketGeometry& out) {
+        for (const std::uint32_t number : numbers) collect(number);
         std::ranges::sort(fragments_, std::less<>{});
         for (std::size_t i = 0; i < fragments_.size();) {
             std::size_t next = i;
@@ -161,7 +221,7 @@ private:
             const bool forward = other.x + other.y > pixel.x + pixel.y;
             return forward ? there : here * 2 + there * -1;
         };
-        return shading_(*piece.layer, piece.line, {here, next({1, 0}), next({0, 1})});
+        return shading_(*piece.layer, piece.line, {here, next({1, 0}), next({0, 1})}, piece.tint);
     }
 
     /// The nearest fragments of a pixel, which come sorted.
@@ -188,7 +248,7 @@ private:
     }
 
     const SurfaceShading& shading_;
-    const std::vector<Piece>& pieces_;
+    const Pieces& pieces_;
     glm::ivec2 size_;
     glm::dvec2 jitter_;
     bool covers_;
@@ -208,16 +268,17 @@ packet::PacketGeometry rasterized(const Scene& scene, const volume::DatasetInfo&
     for (std::size_t i = 0; i < texels; ++i) out.distance[i * 2] = kNothingThere;
     out.color.assign(texels * 4, 0);
     const SurfaceShading shading(scene, info, light, size);
-    const Placement placement(scene.camera, shading.frame(), size);
-    std::vector<Piece> pieces;
+    const Placement placement(scene.camera, shading.frame(), size, jitter);
+    Pieces pieces;
     for (const SurfaceLayer& layer : shading.layers()) {
-        addMesh(placement, layer.layer->geometry->mesh, layer, pieces);
+        addMesh(placement, layer, pieces);
         addLines(placement, layer.layer->geometry->lines, layer, pieces);
     }
     const bool covers = !scene.selection.active(); // brushes change the opacity later
-    parallelFor(std::size_t((size.y + kRows - 1) / kRows), [&](std::size_t i) {
+    const auto bands = pieces.inBands(kRows, std::size_t((size.y + kRows - 1) / kRows));
+    parallelFor(bands.size(), [&](std::size_t i) {
         const int begin = int(i) * kRows;
-        Band(shading, pieces, size, jitter, covers, begin, std::min(begin + kRows, size.y)).draw(out);
+        Band(shading, pieces, size, jitter, covers, begin, std::min(begin + kRows, size.y)).draw(bands[i], out);
     });
     return out;
 }
