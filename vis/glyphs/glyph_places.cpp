@@ -192,20 +192,18 @@ std::vector<std::size_t> spread(const std::vector<Dart>& darts, const GlyphSpace
     for (const Dart& dart : darts) lo = glm::min(lo, dart.at), hi = glm::max(hi, dart.at);
     const double reach = std::max(glm::distance(lo, hi), 1e-300), wanted = space.count;
     const double least = std::max(space.apart, reach * 1e-4);
-    std::vector<std::size_t> best;
-    double bestDistance = 0, distance = std::max(least, reach / std::pow(wanted, 1.0 / dimensions));
-    for (int i = 0; i < 10; ++i) {
+    std::vector<std::size_t> best; // the fewest that are enough, else the most
+    double enough = 0, few = 0;    // distances that leave enough, and too few; 0: not known
+    double distance = std::max(least, reach / std::pow(wanted, 1.0 / dimensions));
+    for (int i = 0; i < 14; ++i) {
         auto kept = thrown(darts, distance, space.apart);
         const auto count = double(kept.size());
-        const bool enough = count >= wanted;
-        if (best.empty() ||
-            (enough ? distance >= bestDistance : double(best.size()) < wanted && count > double(best.size()))) {
-            best = std::move(kept);
-            bestDistance = distance;
-        }
-        if ((enough && count <= wanted * 1.03) || (!enough && distance <= least)) break;
-        // A little less than what the number asks for, so that enough are left.
-        distance = std::max(least, distance * std::pow(count / wanted, 1.0 / dimensions) * (enough ? 0.997 : 0.985));
+        if (count >= wanted || (enough == 0 && kept.size() > best.size())) best = std::move(kept);
+        (count >= wanted ? enough : few) = distance;
+        if ((count >= wanted && count <= wanted * 1.02) || (count < wanted && distance <= least)) break;
+        distance = enough > 0 && few > 0 ? 0.5 * (enough + few)
+                                         : std::max(least, distance * std::pow(count / wanted, 1.0 / dimensions) *
+                                                               (count >= wanted ? 1.05 : 0.95));
     }
     if (double(best.size()) > wanted) best.resize(std::size_t(space.count));
     return best;

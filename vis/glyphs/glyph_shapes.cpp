@@ -23,7 +23,7 @@ std::vector<std::size_t> movedParts(std::span<const double> values) {
 
 void makeArrow(std::span<const double> own, int sides, GlyphShape& shape) {
     const double length = partLength(orRest(own[0], 1)), width = partLength(orRest(own[1], 1));
-    const double foot = -0.5 * length, neck = 0.12 * length;
+    const double foot = -0.49 * length, neck = 0.12 * length;
     addCone(shape, foot, neck, 0.045 * width, 0.045 * width, sides, -1);
     addCone(shape, neck, 0.5 * length, 0.14 * width, 0, sides, -1);
 }
@@ -67,7 +67,7 @@ void makeStar(std::span<const double> values, bool fine, GlyphShape& shape) {
 }
 
 void makeBars(std::span<const double> values, bool fine, GlyphShape& shape) {
-    constexpr double kHalf = 0.36, kFoot = -0.33, kHeight = 0.66, kDepth = 0.05;
+    constexpr double kHalf = 0.36, kFoot = -0.32, kHeight = 0.65, kDepth = 0.05;
     const std::vector<std::size_t> moved = movedParts(values);
     addBox(shape, {-kHalf, kFoot - 0.02}, {kHalf, kFoot}, kDepth, fine, -1);
     const double step = 2 * kHalf / double(std::max<std::size_t>(moved.size(), 1));

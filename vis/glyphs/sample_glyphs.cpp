@@ -85,9 +85,15 @@ private:
     std::vector<std::size_t> order_;
 };
 
-std::vector<glm::dvec3> inSpace(std::span<const GlyphStand> stands, const volume::AxisMaps& axes) {
+/// Places of the data; rounding puts none of its border outside.
+std::vector<glm::dvec3> inSpace(std::span<const GlyphStand> stands, const volume::DatasetInfo& info) {
+    const volume::Box& box = info.bounds;
+    const double slack = 1e-9 * glm::length(box.size());
     std::vector<glm::dvec3> out;
-    for (const GlyphStand& stand : stands) out.push_back(axes.toSpace(stand.place));
+    for (const GlyphStand& stand : stands) {
+        const glm::dvec3 place = info.lattice.axes.toSpace(stand.place), inside = glm::clamp(place, box.lo, box.hi);
+        out.push_back(glm::distance(place, inside) <= slack ? inside : place);
+    }
     return out;
 }
 
@@ -105,7 +111,7 @@ std::vector<std::string> neededChannels(const GlyphLayer& layer) {
 std::vector<double> weightsOf(const volume::BrickSource& source, const GlyphLayer& layer, const GlyphMoment& moment,
                               std::span<const GlyphStand> stands, const Progress& progress) {
     const volume::DatasetInfo& info = source.info();
-    const PlaceSampler sample(source, moment.time, inSpace(stands, info.lattice.axes), progress);
+    const PlaceSampler sample(source, moment.time, inSpace(stands, info), progress);
     const std::vector<bool> present = sample.present(neededChannels(layer));
     std::vector<double> out(stands.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = present[i];
@@ -192,7 +198,7 @@ GlyphSamples sampleGlyphs(const volume::BrickSource& source, const GlyphLayer& l
     out.facing[across] = across == 1 ? -1 : 1; // the way in which x is at the right and what is higher is above
     out.stands = placeGlyphs(
         space, [&](std::span<const GlyphStand> stands) { return weightsOf(source, layer, moment, stands, progress); });
-    const std::vector<glm::dvec3> places = inSpace(out.stands, info.lattice.axes);
+    const std::vector<glm::dvec3> places = inSpace(out.stands, info);
     const PlaceSampler sample(source, moment.time, places, progress);
     for (const GlyphPart& part : layer.parts) out.values.push_back(sample(part.channel));
     const std::string neutral; // of which there are no values
