@@ -188,9 +188,10 @@ void aimFirstView(Session& session, const volume::BrickSource& source, double as
         session.camera.orientation = vis::firstOrientation(world);
     vis::fit(session.camera, world, aspect);
     if (session.layers.empty()) return;
-    constexpr float kFaint = 0.1f; // density of a volume that shows the flow inside
+    constexpr float kFaint = 0.1f; // density of a volume that shows flow and glyphs inside
     const bool flows = std::ranges::any_of(session.layers, [](const vis::Layer& layer) {
-        return layer.visible && std::holds_alternative<vis::FlowLayer>(layer.technique);
+        return layer.visible && (std::holds_alternative<vis::FlowLayer>(layer.technique) ||
+                                 std::holds_alternative<vis::GlyphLayer>(layer.technique));
     });
     for (vis::Layer& layer : session.layers)
         if (auto* volume = std::get_if<vis::VolumeLayer>(&layer.technique); volume && layer.transfer.empty())

@@ -83,6 +83,10 @@ CompareVariant otherVariant(const Session& session, const volume::DatasetInfo& i
                         if (field.refersTo.ends_with("hannel") || field.refersTo.ends_with("ector"))
                             if (const std::string other = nameInOther(info, member); !other.empty())
                                 variant.changes[place + "/technique/" + std::string(field.key)] = other;
+                    if constexpr (std::is_same_v<Member, std::vector<vis::GlyphPart>>)
+                        for (std::size_t n = 0; n < member.size(); ++n)
+                            if (const std::string other = nameInOther(info, member[n].channel); !other.empty())
+                                variant.changes[place + "/technique/parts/" + std::to_string(n) + "/channel"] = other;
                 });
             },
             layer.technique);

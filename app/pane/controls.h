@@ -14,11 +14,12 @@ struct Icon {
 namespace icons {
 inline constexpr Icon kEye{icon::kEye, "on"}, kEyeOff{icon::kEyeOff, "off"}, kPlus{icon::kPlus, "+"},
     kTrash{icon::kTrash, "x"}, kCopy{icon::kCopy, "copy"}, kCube{icon::kCube, "vol"}, kIso{"\uf219", "iso"},
-    kSlice{"\uf24d", "slice"}, kFlow{"\uf178", "flow"}, kPlay{icon::kPlay, ">"}, kPause{icon::kPause, "||"},
-    kStepBack{icon::kStepBack, "<|"}, kStepForward{icon::kStepForward, "|>"}, kFirst{icon::kFirst, "|<"},
-    kLast{icon::kLast, ">|"}, kRepeat{icon::kRepeat, "loop"}, kPingPong{icon::kPingPong, "<>"},
-    kOnce{icon::kOnce, "once"}, kInvert{icon::kInvert, "inv"}, kReverse{"\uf0ec", "rev"}, kColors{"\uf1fb", "own"},
-    kChain{icon::kChain, "link"}, kChainOff{icon::kChainOff, "own"};
+    kSlice{"\uf24d", "slice"}, kFlow{"\uf178", "flow"}, kGlyph{"\uf069", "glyph"}, kPlay{icon::kPlay, ">"},
+    kPause{icon::kPause, "||"}, kStepBack{icon::kStepBack, "<|"}, kStepForward{icon::kStepForward, "|>"},
+    kFirst{icon::kFirst, "|<"}, kLast{icon::kLast, ">|"}, kRepeat{icon::kRepeat, "loop"},
+    kPingPong{icon::kPingPong, "<>"}, kOnce{icon::kOnce, "once"}, kInvert{icon::kInvert, "inv"},
+    kReverse{"\uf0ec", "rev"}, kColors{"\uf1fb", "own"}, kChain{icon::kChain, "link"},
+    kChainOff{icon::kChainOff, "own"};
 } // namespace icons
 
 /// A square button with a glyph, its tooltip on hover; `enabled` false greys it out.

@@ -13,7 +13,7 @@ constexpr double kFree = 0.02;           ///< share of a legend over the object 
 constexpr float kMostOverObject = 0.12f; ///< share of a picture that legends over its object take at most
 
 bool isBar(const LegendEntry& entry) {
-    return entry.names.empty() && !entry.swatch;
+    return entry.names.empty() && !entry.swatch && !entry.glyph;
 }
 
 std::string endOf(const LegendEntry& entry, bool high) {
@@ -86,7 +86,7 @@ public:
             const ImVec2 lo{at.x, at.y + em() * 0.3f}, hi{at.x + strip(entry), lo.y + legendStripHeight()};
             if (entry.swatch)
                 draw.AddRectFilled(lo, hi, toColor(entry.color));
-            else if (entry.names.empty())
+            else if (isBar(entry))
                 drawLegendStrip(draw, lo, hi, entry);
             const float text = hi.x + (strip(entry) > 0 ? em() * 0.4f : 0);
             draw.AddText({text, at.y}, colors.text, fitText(nameOf(entry), right - text + 1).c_str());
@@ -98,7 +98,7 @@ public:
 private:
     static float gap() { return em() * 0.8f; }
     static float strip(const LegendEntry& entry) {
-        return !entry.names.empty() ? 0 : entry.swatch ? legendStripHeight() : em() * 1.6f;
+        return !entry.names.empty() || entry.glyph ? 0 : entry.swatch ? legendStripHeight() : em() * 1.6f;
     }
     std::string nameOf(const LegendEntry& entry) const {
         return units_ ? titleWithUnit(entry.title, entry.unit) : entry.title;

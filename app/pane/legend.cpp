@@ -206,11 +206,13 @@ float drawNames(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& en
 } // namespace
 
 float legendHeight(const LegendEntry& entry) {
+    if (entry.glyph) return glyphLegendHeight(*entry.glyph);
     if (!entry.names.empty()) return em() * 1.2f * static_cast<float>(1 + std::min(entry.names.size(), kMostNames));
     return entry.swatch ? em() * 1.25f : legendBarHeight();
 }
 
 float drawLegend(ImDrawList& draw, ImVec2 min, float width, const LegendEntry& entry) {
+    if (entry.glyph) return drawGlyphLegend(draw, min, width, entry.title, *entry.glyph);
     if (!entry.names.empty()) return drawNames(draw, min, width, entry);
     return entry.swatch ? drawSwatch(draw, min, width, entry) : drawLegendBar(draw, min, width, entry);
 }

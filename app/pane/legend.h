@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/pane/glyph_legend.h"
 #include "app/pane/plot.h"
 #include "app/values/plot.h"
 #include "vis/transfer/transfer_function.h"
@@ -18,7 +19,7 @@ struct NamedColor {
     bool operator==(const NamedColor&) const = default;
 };
 
-/// One colour bar, one swatch with a value (an iso-surface), or the names of a label.
+/// One colour bar, one swatch with a value (an iso-surface), the names of a label, or a glyph with its parts.
 struct LegendEntry {
     std::string title, unit;
     vis::TransferFunction function;
@@ -28,9 +29,10 @@ struct LegendEntry {
     bool swatch = false;           ///< only `color` and `value`
     std::array<double, 3> color{}; ///< sRGB of a swatch
     double value = 0;
-    std::vector<NamedColor> names = {}; ///< of a label: in place of a bar
-    bool opacity = false;               ///< the bar shows the function's opacity and not its colours
-    bool regions = false;               ///< the bar shows the colours of regions; bare where none has the value
+    std::vector<NamedColor> names = {};    ///< of a label: in place of a bar
+    bool opacity = false;                  ///< the bar shows the function's opacity and not its colours
+    bool regions = false;                  ///< the bar shows the colours of regions; bare where none has the value
+    std::optional<GlyphLegend> glyph = {}; ///< in place of a bar; its title is `title`
     bool operator==(const LegendEntry&) const = default;
 };
 

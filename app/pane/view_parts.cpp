@@ -7,6 +7,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "vis/glyphs/glyph_parts.h"
 #include "volume/flow/flow_channels.h"
 
 #include <algorithm>
@@ -260,6 +261,23 @@ LegendEntry legendOfVolume(const vis::VolumeLayer& volume, const volume::Dataset
     return entry;
 }
 
+/// The glyph with its parts, and the colours of what has none of its own.
+void addGlyphLegends(const Session& session, const volume::DatasetInfo& info, const vis::Layer& layer,
+                     const vis::GlyphLayer& glyphs, std::set<std::string>& seen, std::vector<LegendEntry>& entries) {
+    GlyphLegend parts = glyphLegendOf(glyphs, info);
+    if (!parts.parts.empty()) {
+        LegendEntry entry;
+        entry.title = layer.name.empty() ? glyphKindTitle(glyphs.kind) : layer.name;
+        entry.glyph = std::move(parts);
+        entries.push_back(std::move(entry));
+    }
+    const auto color = info.findChannel(vis::glyphColorChannel(glyphs));
+    if (!color || !vis::glyphShowsColor(glyphs)) return;
+    LegendEntry colors = legendOf(session, info, *color, layer.transfer);
+    if (seen.insert(layer.transfer.empty() ? colors.title : layer.transfer).second)
+        entries.push_back(std::move(colors));
+}
+
 } // namespace
 
 std::optional<FigureLegends> figureLegends(const ViewContext& context) {
@@ -275,6 +293,10 @@ std::vector<LegendEntry> sceneLegends(const Session& session, const volume::Data
         const std::string& name = vis::shownChannel(layer.technique);
         const auto channel = info.findChannel(name);
         if (!channel) continue;
+        if (const auto* glyphs = std::get_if<vis::GlyphLayer>(&layer.technique)) {
+            addGlyphLegends(session, info, layer, *glyphs, seen, entries);
+            continue;
+        }
         LegendEntry entry = legendOf(session, info, *channel, layer.transfer);
         const std::string otherTime = otherTimeText(layer, info, session.time);
         const std::string& colorBy = vis::colorByOf(layer.technique);

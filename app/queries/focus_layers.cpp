@@ -78,7 +78,8 @@ void addFocusLayers(vis::Scene& scene, const volume::DatasetInfo& info) {
     if (volumes) return;
     const auto shown = std::ranges::find_if(layers, [](const vis::Layer& layer) {
         return layer.visible && layer.brushes == vis::BrushEffect::Fade &&
-               !std::holds_alternative<vis::FlowLayer>(layer.technique);
+               !std::holds_alternative<vis::FlowLayer>(layer.technique) &&
+               !std::holds_alternative<vis::GlyphLayer>(layer.technique);
     });
     if (shown != layers.end()) addBrushedVolume(scene, info, *shown, {.channel = vis::shownChannel(shown->technique)});
 }

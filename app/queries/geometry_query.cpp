@@ -1,6 +1,8 @@
 #include "app/queries/geometry_query.h"
 
 #include "app/pane/view_parts.h"
+#include "vis/glyphs/glyph_parts.h"
+#include "vis/glyphs/make_glyphs.h"
 #include "vis/shapes/flow_geometry.h"
 #include "volume/bricks/source_at_time.h"
 #include "volume/flow/flow_channels.h"
@@ -44,10 +46,24 @@ FlowQuery flowQuery(const vis::FlowLayer& layer, const Session& session, const v
     return query;
 }
 
+GlyphQuery glyphQuery(const vis::GlyphLayer& glyphs, vis::BrushEffect effect, const Session& session,
+                      const volume::DatasetInfo& info) {
+    GlyphQuery query{glyphs, volume::timesAround(info.times, session.time), session.stretch};
+    query.layer.style = {}; // does not change the geometry
+    if (glyphs.place == vis::GlyphPlace::Cursor) query.cursor = session.cursor;
+    if ((glyphs.seedBrushed || effect != vis::BrushEffect::None) && session.selection.active()) {
+        query.brushes.brushes = session.selection.brushes;
+        query.lenses = brushSpace(session, info);
+    }
+    return query;
+}
+
 /// Nothing for layers that are drawn otherwise.
-std::optional<GeometryQuery> queryOf(const vis::Technique& technique, const Session& session,
-                                     const volume::DatasetInfo& info) {
+std::optional<GeometryQuery> queryOf(const vis::Layer& layer, const Session& session, const volume::DatasetInfo& info) {
+    const vis::Technique& technique = layer.technique;
     if (const auto* flow = std::get_if<vis::FlowLayer>(&technique)) return flowQuery(*flow, session, info);
+    if (const auto* glyphs = std::get_if<vis::GlyphLayer>(&technique))
+        return glyphQuery(*glyphs, layer.brushes, session, info);
     const auto* iso = std::get_if<vis::IsoLayer>(&technique);
     if (!iso || iso->method != vis::SurfaceMethod::Polygons) return std::nullopt;
     return surfaceQuery(*iso, info, volume::timesAround(info.times, session.time));
@@ -81,6 +97,14 @@ SharedGeometry makeDrawn(const FlowQuery& query, const SharedSource& source, int
     return vis::makeFlow(*shown.source, query.layer, shown.time, query.stretch, progress, &interest);
 }
 
+SharedGeometry makeDrawn(const GlyphQuery& query, const SharedSource& source, int, const Progress& progress) {
+    const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
+    const vis::DoiFunction interest(query.brushes, query.lenses);
+    const vis::GlyphMoment moment{shown.time, query.stretch, query.cursor,
+                                  query.brushes.brushes.empty() ? nullptr : &interest};
+    return vis::makeGlyphs(*shown.source, query.layer, moment, progress);
+}
+
 /// How the answer to a query is drawn: as the layer says now, coloured by what it was made for.
 vis::GeometryLayer drawnAs(const vis::Layer& layer, const GeometryQuery& made) {
     vis::GeometryLayer drawn;
@@ -96,11 +120,17 @@ vis::GeometryLayer drawnAs(const vis::Layer& layer, const GeometryQuery& made) {
         drawn.style = flow->style;
         if (const auto* lines = std::get_if<FlowQuery>(&made)) drawn.channel = lines->layer.channel;
     }
+    if (const auto* glyphs = std::get_if<vis::GlyphLayer>(&layer.technique)) {
+        drawn.style = glyphs->style;
+        if (const auto* figures = std::get_if<GlyphQuery>(&made)) drawn.channel = glyphColorChannel(figures->layer);
+    }
     return drawn;
 }
 
 AsyncOptions optionsFor(const vis::Layer& layer, const std::string& place, const volume::BrickSource& source) {
-    AsyncOptions options{.key = place, .title = "Flow of " + shownChannel(layer.technique), .quiet = true};
+    const bool glyphs = std::holds_alternative<vis::GlyphLayer>(layer.technique);
+    AsyncOptions options{
+        .key = place, .title = (glyphs ? "Glyphs of " : "Flow of ") + shownChannel(layer.technique), .quiet = true};
     options.duringEdits = true;
     if (!std::holds_alternative<vis::IsoLayer>(layer.technique)) return options;
     options.title = "Surface of " + shownChannel(layer.technique);
@@ -136,7 +166,7 @@ std::vector<vis::GeometryLayer> AsyncGeometry::get(ViewContext& context, const s
     for (std::size_t i = 0; i < context.session.layers.size(); ++i) {
         const vis::Layer& layer = context.session.layers[i];
         if (!layer.visible) continue;
-        const auto query = queryOf(layer.technique, context.session, context.source->info());
+        const auto query = queryOf(layer, context.session, context.source->info());
         if (!query) continue;
         auto made = query_.answer(
             context, context.source, optionsFor(layer, pane + ":geometry" + std::to_string(i), *context.source), *query,

@@ -8,9 +8,9 @@
 #include <variant>
 #include <vector>
 
-/// Layers that are drawn as geometry, polygonal surfaces and flow, computed in the background: with a coarse level of
-/// detail at once where there are several, the finest when it is done. Kept for a while, so that going back in time
-/// costs nothing. A new technique is a query here, with what answers it and how that is drawn.
+/// Layers that are drawn as geometry, polygonal surfaces, flow and glyphs, computed in the background: with a coarse
+/// level of detail at once where there are several, the finest when it is done. Kept for a while, so that going back in
+/// time costs nothing. A new technique is a query here, with what answers it and how that is drawn.
 namespace tessera::app {
 
 /// What decides a surface; layers of equal queries share one.
@@ -31,7 +31,18 @@ struct FlowQuery {
     bool operator==(const FlowQuery&) const = default;
 };
 
-using GeometryQuery = std::variant<SurfaceQuery, FlowQuery>;
+/// What decides figures of many parameters; how they are drawn is left out.
+struct GlyphQuery {
+    vis::GlyphLayer layer;
+    volume::TimePair time;
+    glm::dvec3 stretch{1};
+    glm::dvec3 cursor{0};        ///< of a figure that stands there, else 0
+    vis::Selection brushes = {}; ///< by whose interest they are larger or denser
+    vis::LensSpace lenses = {};
+    bool operator==(const GlyphQuery&) const = default;
+};
+
+using GeometryQuery = std::variant<SurfaceQuery, FlowQuery, GlyphQuery>;
 
 class AsyncGeometry {
 public:

@@ -99,6 +99,17 @@ const Readout& sharedReadout(ViewContext& context) {
     return readout;
 }
 
+std::vector<LegendEntry> withValuesAtCursor(ViewContext& context, std::vector<LegendEntry> legends) {
+    if (!context.takesInput() || !context.decoration.cursor) return legends;
+    for (LegendEntry& entry : legends) {
+        if (!entry.glyph) continue;
+        const Readout& readout = sharedReadout(context);
+        entry.glyph->atCursor = !readout.values.empty();
+        for (GlyphLegend::Part& part : entry.glyph->parts) part.value = readout.value(part.channel);
+    }
+    return legends;
+}
+
 namespace {
 
 /// Where the cross-hair is: "x 1.10", "y 0.900", "z 20.0 mm"; the unit once, where all three axes have the same.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "app/pane/legend.h"
 #include "app/queries/async_query.h"
 #include "app/values/table.h"
 #include "volume/bricks/brick_cache.h"
@@ -35,6 +36,9 @@ struct Readout {
 void updateReadout(ViewContext& context, Readout& readout);
 /// The updated read-out that all views share: each value is read once.
 const Readout& sharedReadout(ViewContext& context);
+
+/// Legends with the values at the cross-hair of the parts of glyphs, where somebody can move it.
+std::vector<LegendEntry> withValuesAtCursor(ViewContext& context, std::vector<LegendEntry> legends);
 
 /// Table of position, index and values; in a narrow room the values in running lines.
 void drawReadout(ViewContext& context, const Readout& readout);

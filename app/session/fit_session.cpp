@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace tessera::app {
 
@@ -110,13 +111,29 @@ private:
                                         " is not in the data");
                     member.clear();
                 }
+            } else if constexpr (std::is_same_v<Member, std::vector<vis::GlyphPart>>) {
+                fitParts(member);
             }
         });
+        if constexpr (requires { technique.surfaceValue; })
+            if (technique.place == vis::GlyphPlace::Surface && technique.surface.empty()) technique.place = {};
         if constexpr (requires { technique.value; })
             if (const auto index = info_.findChannel(technique.channel); replaced && index) {
                 const Range range = info_.channelRange(channels_[static_cast<std::size_t>(*index)]);
                 technique.value = 0.5 * (range.lo + range.hi);
             }
+    }
+
+    /// A part that would show the same as another for want of parameters is left out.
+    void fitParts(std::vector<vis::GlyphPart>& parts) {
+        std::set<std::string> taken;
+        for (const vis::GlyphPart& part : parts)
+            if (known(part.channel)) taken.insert(part.channel);
+        std::erase_if(parts, [&](vis::GlyphPart& part) {
+            if (!replace(part.channel)) return false;
+            part.range = {0, 0}; // in the values of another parameter it means nothing
+            return !taken.insert(part.channel).second;
+        });
     }
 
     /// Every member of a view that names a parameter, and those of its members.

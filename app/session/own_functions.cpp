@@ -1,6 +1,7 @@
 #include "app/session/own_functions.h"
 
 #include "app/session/shown_scene.h"
+#include "vis/glyphs/glyph_parts.h"
 
 #include <algorithm>
 #include <utility>
@@ -57,6 +58,7 @@ void dropFormerFunction(Session& session, vis::Layer& layer, const std::vector<O
 const std::string& channelOfFunction(const vis::Technique& technique) {
     const auto* surface = std::get_if<vis::IsoLayer>(&technique);
     if (surface && !surface->colorBy.empty()) return surface->colorBy;
+    if (const auto* glyphs = std::get_if<vis::GlyphLayer>(&technique)) return vis::glyphColorChannel(*glyphs);
     return vis::shownChannel(technique);
 }
 

@@ -3,6 +3,7 @@
 #include "app/tools/handled_planes.h"
 #include "app/tools/profile_line.h"
 #include "app/tools/space_handles.h"
+#include "vis/glyphs/glyph_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,16 +34,33 @@ int thinnest(glm::dvec3 edges) {
     return axis;
 }
 
-vis::FlowLayer& flowAt(Session& session, std::size_t layer) {
-    return std::get<vis::FlowLayer>(session.layers[layer].technique);
+/// Corners of where seeds or glyphs begin.
+struct Rake {
+    glm::vec3 &from, &to;
+};
+
+/// Of a layer that has one.
+Rake rakeOf(vis::Technique& technique) {
+    if (auto* const glyphs = std::get_if<vis::GlyphLayer>(&technique)) return {glyphs->from, glyphs->to};
+    auto& flow = std::get<vis::FlowLayer>(technique);
+    return {flow.from, flow.to};
+}
+
+/// The shape of a rake; nothing for layers without one.
+std::optional<volume::SeedShape> rakeShape(const vis::Technique& technique) {
+    if (const auto* flow = std::get_if<vis::FlowLayer>(&technique)) return flow->seeds;
+    const auto* glyphs = std::get_if<vis::GlyphLayer>(&technique);
+    if (!glyphs || glyphs->place == vis::GlyphPlace::Cursor) return std::nullopt;
+    if (glyphs->place == vis::GlyphPlace::Plane) return volume::SeedShape::Plane;
+    return glyphs->place == vis::GlyphPlace::Line ? volume::SeedShape::Line : volume::SeedShape::Random;
 }
 
 /// Moves a rake as it is; it stays in the box.
-void moveRake(vis::FlowLayer& flow, glm::vec3 middle) {
-    const glm::vec3 half = glm::abs(flow.to - flow.from) * 0.5f;
-    const glm::vec3 by = glm::clamp(middle, half, glm::max(half, 1.0f - half)) - (flow.from + flow.to) * 0.5f;
-    flow.from = glm::clamp(flow.from + by, glm::vec3(0), glm::vec3(1));
-    flow.to = glm::clamp(flow.to + by, glm::vec3(0), glm::vec3(1));
+void moveRake(Rake rake, glm::vec3 middle) {
+    const glm::vec3 half = glm::abs(rake.to - rake.from) * 0.5f;
+    const glm::vec3 by = glm::clamp(middle, half, glm::max(half, 1.0f - half)) - (rake.from + rake.to) * 0.5f;
+    rake.from = glm::clamp(rake.from + by, glm::vec3(0), glm::vec3(1));
+    rake.to = glm::clamp(rake.to + by, glm::vec3(0), glm::vec3(1));
 }
 
 /// Shares of the box on its sheet, in which seeds are placed (vis/shapes/flow_geometry.h): lines of seeds are straight
@@ -54,11 +72,11 @@ struct RakeShares {
     glm::vec3 of(glm::dvec3 place) const { return glm::vec3((axes.toSheet(place) - lo) / size); }
     glm::dvec3 placeOf(glm::dvec3 share) const { return lo + share * size; } ///< of one in space
     /// Changes a rake whose corners are such shares meanwhile.
-    template <class Change> void edit(vis::FlowLayer& flow, const Change& change) const {
-        if (axes.isEven()) return change(flow);
-        for (glm::vec3* corner : {&flow.from, &flow.to}) *corner = of(placeOf(*corner));
-        change(flow);
-        for (glm::vec3* corner : {&flow.from, &flow.to})
+    template <class Change> void edit(Rake rake, const Change& change) const {
+        if (axes.isEven()) return change(rake);
+        for (glm::vec3* corner : {&rake.from, &rake.to}) *corner = of(placeOf(*corner));
+        change(rake);
+        for (glm::vec3* corner : {&rake.from, &rake.to})
             *corner = glm::vec3((axes.toSpace(placeOf(*corner)) - lo) / size);
     }
 };
@@ -66,14 +84,16 @@ struct RakeShares {
 void addRake(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
              std::size_t index) {
     const vis::Layer& layer = session.layers[index];
-    const auto* flow = std::get_if<vis::FlowLayer>(&layer.technique);
+    const auto shape = rakeShape(layer.technique);
     const glm::dvec3 size = info.bounds.size();
-    if (!flow || !layer.visible || !(std::min({size.x, size.y, size.z}) > 0)) return;
-    const bool line = flow->seeds == volume::SeedShape::Line;
-    const RakeShares shares{line ? volume::AxisMaps{} : info.lattice.axes, info.bounds.lo, size};
+    if (!shape || !layer.visible || !(std::min({size.x, size.y, size.z}) > 0)) return;
+    vis::Technique technique = layer.technique;
+    const Rake rake = rakeOf(technique);
+    const bool glyphs = std::holds_alternative<vis::GlyphLayer>(technique), line = *shape == volume::SeedShape::Line;
+    const RakeShares shares{line && !glyphs ? volume::AxisMaps{} : info.lattice.axes, info.bounds.lo, size};
     const volume::AxisMaps& axes = shares.axes;
     const auto physical = [&](glm::dvec3 share) { return info.bounds.lo + share * size; };
-    const glm::dvec3 from = physical(flow->from), to = physical(flow->to);
+    const glm::dvec3 from = physical(rake.from), to = physical(rake.to);
     const glm::dvec3 middle = axes.toSpace(0.5 * (axes.toSheet(from) + axes.toSheet(to)));
     HandledObject object;
     object.key = "rake " + std::to_string(index);
@@ -83,16 +103,16 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
     object.color = plotColors().text;
     object.outlined = true;
     const auto whole = [index, shares](Session& edited, glm::dvec3 place) {
-        shares.edit(flowAt(edited, index), [&](vis::FlowLayer& own) { moveRake(own, shares.of(place)); });
+        shares.edit(rakeOf(edited.layers[index].technique), [&](Rake own) { moveRake(own, shares.of(place)); });
     };
-    if (flow->seeds == volume::SeedShape::Sphere) {
+    if (*shape == volume::SeedShape::Sphere) {
         // A ball of the picture, in the box between both corners.
         const glm::dvec3 a = axes.toSheet(from), b = axes.toSheet(to), reach = glm::abs(b - a) * 0.5;
         object.handles = radialHandles(0.5 * (a + b), reach, axes);
         object.lines = linesInSpace(ballWires(0.5 * (a + b), reach), axes);
         object.move = [index, shares, whole](Session& edited, std::size_t handle, glm::dvec3 place) {
             if (handle == 0) return whole(edited, place);
-            shares.edit(flowAt(edited, index), [&](vis::FlowLayer& own) {
+            shares.edit(rakeOf(edited.layers[index].technique), [&](Rake own) {
                 const auto axis = static_cast<int>(handle) - 1;
                 const float center = 0.5f * (own.from[axis] + own.to[axis]),
                             radius = std::max(std::abs(shares.of(place)[axis] - center), float(kLeastRadius));
@@ -100,9 +120,10 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
                 own.to[axis] = std::min(1.0f, center + radius);
             });
         };
-    } else if (flow->seeds == volume::SeedShape::Plane) {
-        const int across = thinnest(glm::abs((axes.toSheet(to) - axes.toSheet(from)) * session.stretch)),
-                  u = (across + 1) % 3, v = (across + 2) % 3;
+    } else if (*shape == volume::SeedShape::Plane) {
+        const glm::dvec3 edges = glm::abs((axes.toSheet(to) - axes.toSheet(from)) * session.stretch);
+        const int across = glyphs ? vis::thinnestAxis(edges) : thinnest(edges), u = (across + 1) % 3,
+                  v = (across + 2) % 3;
         object.handles = {{.at = middle, .whole = true}};
         std::vector<glm::dvec3> corners;
         for (const int corner : {0, 1, 3, 2}) { // around
@@ -114,7 +135,7 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
         }
         for (std::size_t i = 0; i < 4; ++i) object.lines.emplace_back(corners[i], corners[(i + 1) % 4]);
         object.move = [index, shares, across, u, v](Session& edited, std::size_t handle, glm::dvec3 place) {
-            shares.edit(flowAt(edited, index), [&](vis::FlowLayer& own) {
+            shares.edit(rakeOf(edited.layers[index].technique), [&](Rake own) {
                 const glm::vec3 at = shares.of(place);
                 if (handle == 0) { // a plane has no thickness once it is moved
                     own.from[across] = own.to[across] = at[across];
@@ -127,7 +148,7 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
             });
         };
     } else {
-        const bool everything = flow->from == glm::vec3(0) && flow->to == glm::vec3(1);
+        const bool everything = rake.from == glm::vec3(0) && rake.to == glm::vec3(1);
         object.handles = {{.at = from}, {.at = to}};
         if (!everything) object.handles.push_back({.at = middle, .whole = true}); // else there is no room
         if (line)
@@ -136,8 +157,8 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
             object.lines = boxWires(from, to);
         object.move = [index, shares, whole](Session& edited, std::size_t handle, glm::dvec3 place) {
             if (handle == 2) return whole(edited, place);
-            shares.edit(flowAt(edited, index),
-                        [&](vis::FlowLayer& own) { (handle == 0 ? own.from : own.to) = shares.of(place); });
+            shares.edit(rakeOf(edited.layers[index].technique),
+                        [&](Rake own) { (handle == 0 ? own.from : own.to) = shares.of(place); });
         };
     }
     objects.push_back(std::move(object));

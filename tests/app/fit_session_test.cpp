@@ -10,6 +10,7 @@
 #include <functional>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <set>
 #include <type_traits>
 
 namespace tessera::app {
@@ -71,6 +72,31 @@ TEST(SessionTest, FitGivesFlowAVectorOfTheData) {
     EXPECT_NE(flow.vector, "");
     EXPECT_EQ(flow.channel, "T");
     EXPECT_EQ(flow.weight, "");
+}
+
+TEST(SessionTest, FitGivesGlyphsParametersOfTheData) {
+    const volume::DatasetInfo info = cellInfo();
+    Session session = defaultSession(info, {});
+    vis::GlyphLayer glyphs{.channel = "T", .direction = "wind", .weight = "salt", .surface = "salt"};
+    glyphs.place = vis::GlyphPlace::Surface;
+    glyphs.parts = {{"spoke 1", "T", {1, 2}}, {"spoke 2", "salt", {1, 2}}};
+    for (int i = 0; i < 9; ++i) glyphs.parts.push_back({"spoke 3", "unknown " + std::to_string(i), {0, 0}});
+    session.layers = {{"glyphs", true, glyphs}};
+    std::vector<std::string> messages;
+    fitSession(session, info, messages);
+    const auto& fitted = std::get<vis::GlyphLayer>(session.layers[0].technique);
+    EXPECT_EQ(fitted.direction, "");
+    EXPECT_EQ(fitted.weight, "");
+    EXPECT_EQ(fitted.surface, "");
+    EXPECT_EQ(fitted.place, vis::GlyphPlace::Plane) << "there is no such surface";
+    ASSERT_GE(fitted.parts.size(), 2u);
+    EXPECT_EQ(fitted.parts[0], glyphs.parts[0]) << "what is known stays";
+    std::set<std::string> shown;
+    for (const vis::GlyphPart& part : fitted.parts) {
+        EXPECT_TRUE(info.findChannel(part.channel)) << part.channel;
+        EXPECT_TRUE(shown.insert(part.channel).second) << part.channel << " is shown twice";
+    }
+    EXPECT_EQ(fitted.parts[1].range, (Range{0, 0})) << "values of another parameter mean nothing";
 }
 
 /// Calls `visit(name)` for every member of a view that names parameters, in the order of their descriptions.

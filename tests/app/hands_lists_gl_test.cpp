@@ -112,7 +112,47 @@ TEST_F(ListHands, EveryKindOfLayerIsAdded) {
     const vis::Technique flow = added("Flow");
     EXPECT_EQ(std::get<vis::FlowLayer>(flow).vector, "U");
     EXPECT_EQ(std::get<vis::FlowLayer>(flow).channel, "|U|");
-    EXPECT_EQ(session().layers.size(), 8u);
+    const auto glyphs = std::get<vis::GlyphLayer>(added("Glyphs"));
+    EXPECT_FALSE(glyphs.parts.empty()) << "it shows something at once";
+    EXPECT_EQ(session().layers.size(), 9u);
+}
+
+TEST_F(ListHands, PartsOfAGlyphAreMovedByTheParametersChosenForThem) {
+    show(LayersView{}, {460, 1600}, [](Session& edited) {
+        edited.layers = {{"", true, vis::GlyphLayer{.channel = "T", .parts = {{"spoke 1", "T", {0, 0}}}}}};
+    });
+    const auto glyphs = [&] { return std::get<vis::GlyphLayer>(session().layers[0].technique); };
+    const auto inSettings = [&](const char* name) {
+        return item(window("Glyphs"), {"###parts", std::string("##") + name}).GetCenter();
+    };
+    const auto choose = [&](const char* part, const char* channel) {
+        click(inSettings(part));
+        ASSERT_TRUE(popup()) << part;
+        click(item(popup(), {channel}).GetCenter());
+    };
+    click(item(window("Glyphs"), {"###parts"}).GetCenter());
+    const Session before = session();
+    choose("spoke 2", "c");
+    ASSERT_EQ(glyphs().parts.size(), 2u);
+    EXPECT_EQ(glyphs().parts[1], (vis::GlyphPart{"spoke 2", "c", {0, 0}})) << "by the range of the parameter";
+    settle();
+    EXPECT_EQ(steps(), 1u);
+    undo();
+    EXPECT_TRUE(session() == before) << apart(before);
+    choose("spoke 1", "none");
+    EXPECT_TRUE(glyphs().parts.empty()) << "at rest";
+    choose("size", "|U|");
+    choose("spoke 3", "T");
+    ASSERT_EQ(glyphs().parts.size(), 2u);
+    // Another kind shows the same parameters by its own parts.
+    click(item(window("Glyphs"), {"##kind"}).GetCenter());
+    ASSERT_TRUE(popup());
+    click(item(popup(), {"Bars"}).GetCenter());
+    EXPECT_EQ(glyphs().kind, vis::GlyphKind::Bars);
+    ASSERT_EQ(glyphs().parts.size(), 2u);
+    EXPECT_EQ(glyphs().parts[0].part, "size");
+    EXPECT_EQ(glyphs().parts[1].part, "bar 1");
+    EXPECT_EQ(glyphs().parts[1].channel, "T");
 }
 
 TEST_F(ListHands, ALayerIsNamedAfterWhatItShowsUntilTheUserNamesIt) {

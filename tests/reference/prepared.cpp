@@ -61,7 +61,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
         one.lens = findLens(lenses, layer.lens);
         one.brushes = layer.brushes;
         const bool seen = layer.visible && !std::holds_alternative<FlowLayer>(layer.technique) &&
-                          (layer.lens.empty() || one.lens >= 0);
+                          !std::holds_alternative<GlyphLayer>(layer.technique) && (layer.lens.empty() || one.lens >= 0);
         one.samples = seen ? load(name, false, layer.timeShift) : nullptr;
         if (one.samples == nullptr) continue;
         if (layer.lens.empty()) one.lens = -1;

@@ -1,6 +1,6 @@
 #include "vis/processor/rasterized.h"
 
-#include "vis/processor/surface_shading.h"
+#include "vis/processor/pieces.h"
 #include "volume/base/parallel.h"
 
 #include <algorithm>
@@ -13,102 +13,6 @@ namespace {
 
 constexpr float kNothingThere = 1e9f; ///< distance where there is no surface
 constexpr double kCovers = 0.998;     ///< opacity of what occludes everything behind it
-
-/// A triangle of the picture.
-struct Piece {
-    Triangle triangle;
-    Triangle::Box box;
-    std::array<SurfacePoint, 3> corners;
-    const SurfaceLayer* layer = nullptr;
-    bool line = false;
-
-    SurfacePoint between(glm::dvec3 shares) const {
-        return corners[0] * shares.x + corners[1] * shares.y + corners[2] * shares.z;
-    }
-};
-
-/// Where points of the sheet of the data lie in the picture.
-class Placement {
-public:
-    Placement(const Camera& camera, const WorldFrame& frame, glm::ivec2 size)
-        : frame_(frame), size_(size), toClip_(projectionMatrix(camera, double(size.x) / size.y) * viewMatrix(camera)) {}
-
-    glm::dvec3 world(glm::dvec3 sheet) const { return frame_.sheetToWorld(sheet); }
-    glm::dvec4 clip(glm::dvec3 world) const { return toClip_ * glm::dvec4(world, 1); }
-    /// A position of clip space with x and y in pixels, times w.
-    glm::dvec4 pixels(glm::dvec4 clip) const {
-        return {(glm::dvec2(clip) + clip.w) * 0.5 * glm::dvec2(size_), clip.z, clip.w};
-    }
-    glm::ivec2 size() const { return size_; }
-    const WorldFrame& frame() const { return frame_; }
-
-private:
-    WorldFrame frame_;
-    glm::ivec2 size_;
-    glm::dmat4 toClip_;
-};
-
-void addPiece(const Placement& placement, const std::array<glm::dvec4, 3>& clip,
-              const std::array<SurfacePoint, 3>& corners, const SurfaceLayer& layer, bool line,
-              std::vector<Piece>& pieces) {
-    const Triangle triangle({placement.pixels(clip[0]), placement.pixels(clip[1]), placement.pixels(clip[2])});
-    const Triangle::Box box = triangle.box(placement.size());
-    if (box.lo.x >= box.hi.x || box.lo.y >= box.hi.y) return;
-    pieces.push_back({triangle, box, corners, &layer, line});
-}
-
-void addMesh(const Placement& placement, const volume::SurfaceMesh& mesh, const SurfaceLayer& layer,
-             std::vector<Piece>& pieces) {
-    for (const glm::uvec3& triangle : mesh.triangles) {
-        std::array<glm::dvec4, 3> clip;
-        std::array<SurfacePoint, 3> corners;
-        for (int i = 0; i < 3; ++i) {
-            const std::size_t v = triangle[i], to = std::size_t(i);
-            const glm::dvec3 normal = mesh.normals.empty() ? glm::dvec3(0) : glm::dvec3(mesh.normals[v]);
-            corners[to] = {.world = placement.world(mesh.origin + glm::dvec3(mesh.positions[v])),
-                           .direction = normal / placement.frame().scale,
-                           .value = mesh.scalars.empty() ? 0 : double(mesh.scalars[v])};
-            clip[to] = placement.clip(corners[to].world);
-        }
-        addPiece(placement, clip, corners, layer, false, pieces);
-    }
-}
-
-/// A segment of a line as a strip of two triangles that faces the viewer. Twin: vis/shaders/geometry_lines.vert.glsl.
-void addSegment(const Placement& placement, const std::array<SurfacePoint, 2>& ends, const SurfaceLayer& layer,
-                std::vector<Piece>& pieces) {
-    const glm::dvec2 size(placement.size());
-    const glm::dvec4 a = placement.clip(ends[0].world), b = placement.clip(ends[1].world);
-    glm::dvec2 along = (glm::dvec2(b) / std::max(b.w, 1e-6) - glm::dvec2(a) / std::max(a.w, 1e-6)) * size;
-    along = glm::dot(along, along) > 1e-12 ? glm::normalize(along) : glm::dvec2(1, 0);
-    const glm::dvec2 beside = glm::dvec2(-along.y, along.x) * double(layer.layer->style.lineWidth) / size;
-    std::array<glm::dvec4, 4> clip;
-    std::array<SurfacePoint, 4> corners;
-    for (std::size_t i = 0; i < 4; ++i) {
-        const double side = i >= 2 ? 1 : -1;
-        clip[i] = i % 2 == 1 ? b : a;
-        clip[i] += glm::dvec4(beside * (side * clip[i].w), 0, 0);
-        corners[i] = ends[i % 2];
-        corners[i].side = side;
-    }
-    addPiece(placement, {clip[0], clip[1], clip[2]}, {corners[0], corners[1], corners[2]}, layer, true, pieces);
-    addPiece(placement, {clip[2], clip[1], clip[3]}, {corners[2], corners[1], corners[3]}, layer, true, pieces);
-}
-
-void addLines(const Placement& placement, const LineSet& lines, const SurfaceLayer& layer, std::vector<Piece>& pieces) {
-    std::size_t first = 0;
-    for (const std::uint32_t end : lines.ends) {
-        for (std::size_t i = first; i + 1 < std::min<std::size_t>(end, lines.positions.size()); ++i) {
-            std::array<SurfacePoint, 2> ends;
-            for (std::size_t k = 0; k < 2; ++k)
-                ends[k] = {.world = placement.world(lines.origin + glm::dvec3(lines.positions[i + k])),
-                           .value = lines.scalars.empty() ? 0 : double(lines.scalars[i + k])};
-            ends[0].direction = ends[1].direction = ends[1].world - ends[0].world;
-            addSegment(placement, ends, layer, pieces);
-        }
-        first = end;
-    }
-}
 
 /// A pixel of a piece.
 struct Fragment {
@@ -123,12 +27,20 @@ struct Fragment {
 /// Rows [begin, end) of a picture.
 class Band {
 public:
-    Band(const SurfaceShading& shading, const std::vector<Piece>& pieces, glm::ivec2 size, glm::dvec2 jitter,
-         bool covers, int begin, int end)
-        : shading_(shading), pieces_(pieces), size_(size), jitter_(jitter), covers_(covers), begin_(begin), end_(end) {}
+    /// `covers`: nothing is seen behind what is opaque. `whole`: everything is opaque and nothing is cut away, so that
+    /// the nearest triangle of a pixel is what it shows.
+    Band(const SurfaceShading& shading, const Pieces& pieces, glm::ivec2 size, glm::dvec2 jitter, bool covers,
+         bool whole, int begin, int end)
+        : shading_(shading), pieces_(pieces), size_(size), jitter_(jitter), covers_(covers), begin_(begin), end_(end) {
+        if (whole) nearest_.resize(std::size_t(size.x) * std::size_t(end - begin), {0, kNothingThere, 0});
+    }
 
-    void draw(packet::PacketGeometry& out) {
-        for (std::size_t i = 0; i < pieces_.size(); ++i) collect(std::uint32_t(i));
+    void draw(std::span<const std::uint32_t> numbers, packet::PacketGeometry& out) {
+        for (const std::uint32_t number : numbers) collect(number);
+        for (std::size_t i = 0; i < nearest_.size(); ++i) {
+            nearest_[i].pixel = int(i);
+            if (nearest_[i].along < kNothingThere) drawPixel(std::span(nearest_).subspan(i, 1), out);
+        }
         std::ranges::sort(fragments_, std::less<>{});
         for (std::size_t i = 0; i < fragments_.size();) {
             std::size_t next = i;
@@ -141,13 +53,21 @@ public:
 private:
     glm::dvec2 centre(glm::ivec2 pixel) const { return glm::dvec2(pixel) + 0.5 + jitter_; }
 
-    void collect(std::uint32_t index) {
-        const Piece& piece = pieces_[index];
-        for (int y = std::max(piece.box.lo.y, begin_); y < std::min(piece.box.hi.y, end_); ++y)
-            for (int x = piece.box.lo.x; x < piece.box.hi.x; ++x)
+    void collect(std::uint32_t number) {
+        const Piece piece = pieces_[number];
+        const Triangle::Box box = pieces_.box(number);
+        for (int y = std::max(box.lo.y, begin_); y < std::min(box.hi.y, end_); ++y)
+            for (int x = box.lo.x; x < box.hi.x; ++x)
                 if (const auto shares = piece.triangle.covered(centre({x, y})))
-                    fragments_.push_back(
-                        {(y - begin_) * size_.x + x, float(shading_.along(piece.between(*shares).world)), index});
+                    add({(y - begin_) * size_.x + x, float(shading_.along(piece.between(*shares).world)), number});
+    }
+
+    void add(const Fragment& fragment) {
+        if (nearest_.empty()) {
+            fragments_.push_back(fragment);
+        } else if (Fragment& best = nearest_[std::size_t(fragment.pixel)]; fragment.along < best.along) {
+            best = fragment; // of equally far ones the first stays
+        }
     }
 
     /// What a pixel sees of a piece. Changes are taken within pairs of pixels, as OpenGL takes them.
@@ -161,11 +81,17 @@ private:
             const bool forward = other.x + other.y > pixel.x + pixel.y;
             return forward ? there : here * 2 + there * -1;
         };
-        return shading_(*piece.layer, piece.line, {here, next({1, 0}), next({0, 1})});
+        return shading_(*piece.layer, piece.line, {here, next({1, 0}), next({0, 1})}, piece.tint);
+    }
+
+    /// The piece of that number, which is often that of the pixel before.
+    const Piece& pieceOf(std::uint32_t number) {
+        if (!last_ || last_->first != number) last_.emplace(number, pieces_[number]);
+        return last_->second;
     }
 
     /// The nearest fragments of a pixel, which come sorted.
-    void drawPixel(std::span<const Fragment> fragments, packet::PacketGeometry& out) const {
+    void drawPixel(std::span<const Fragment> fragments, packet::PacketGeometry& out) {
         const std::size_t pixels = std::size_t(size_.x) * std::size_t(size_.y);
         const int local = fragments.front().pixel;
         const glm::ivec2 pixel(local % size_.x, begin_ + local / size_.x);
@@ -175,7 +101,7 @@ private:
         for (const Fragment& fragment : fragments) {
             if (peel == out.peels) return;
             if (fragment.along <= last) continue;
-            const Piece& piece = pieces_[fragment.piece];
+            const Piece& piece = pieceOf(fragment.piece);
             const std::optional<SurfaceColor> seen = colorOf(piece, pixel);
             if (!seen) continue;
             out.distance[to * 2] = last = fragment.along;
@@ -188,13 +114,20 @@ private:
     }
 
     const SurfaceShading& shading_;
-    const std::vector<Piece>& pieces_;
+    const Pieces& pieces_;
     glm::ivec2 size_;
     glm::dvec2 jitter_;
     bool covers_;
     int begin_, end_;
-    std::vector<Fragment> fragments_;
+    std::vector<Fragment> fragments_, nearest_; ///< nearest_: of each pixel, or empty
+    std::optional<std::pair<std::uint32_t, Piece>> last_;
 };
+
+/// Whether nothing of the geometry of a scene is cut away, by places or by a look.
+bool isWhole(const Scene& scene) {
+    const auto looks = [](const GeometryLayer& layer) { return layer.style.look.any(); };
+    return scene.clips.empty() && scene.lenses.empty() && std::ranges::none_of(scene.geometry, looks);
+}
 
 } // namespace
 
@@ -208,16 +141,13 @@ packet::PacketGeometry rasterized(const Scene& scene, const volume::DatasetInfo&
     for (std::size_t i = 0; i < texels; ++i) out.distance[i * 2] = kNothingThere;
     out.color.assign(texels * 4, 0);
     const SurfaceShading shading(scene, info, light, size);
-    const Placement placement(scene.camera, shading.frame(), size);
-    std::vector<Piece> pieces;
-    for (const SurfaceLayer& layer : shading.layers()) {
-        addMesh(placement, layer.layer->geometry->mesh, layer, pieces);
-        addLines(placement, layer.layer->geometry->lines, layer, pieces);
-    }
+    const Pieces pieces(shading, scene.camera, size, jitter);
     const bool covers = !scene.selection.active(); // brushes change the opacity later
-    parallelFor(std::size_t((size.y + kRows - 1) / kRows), [&](std::size_t i) {
+    const bool whole = out.peels == 1 && isWhole(scene);
+    const auto bands = pieces.inBands(kRows, std::size_t((size.y + kRows - 1) / kRows));
+    parallelFor(bands.size(), [&](std::size_t i) {
         const int begin = int(i) * kRows;
-        Band(shading, pieces, size, jitter, covers, begin, std::min(begin + kRows, size.y)).draw(out);
+        Band(shading, pieces, size, jitter, covers, whole, begin, std::min(begin + kRows, size.y)).draw(bands[i], out);
     });
     return out;
 }

@@ -97,8 +97,8 @@ LookSample SurfaceShading::lookSample(const GeometryLayer& layer, const SurfaceS
     return at;
 }
 
-std::optional<SurfaceColor> SurfaceShading::operator()(const SurfaceLayer& layer, bool line,
-                                                       const SurfaceSpot& spot) const {
+std::optional<SurfaceColor> SurfaceShading::operator()(const SurfaceLayer& layer, bool line, const SurfaceSpot& spot,
+                                                       glm::vec4 tint) const {
     const glm::dvec3 world = spot.here.world;
     const glm::dvec3 flat = glm::cross(spot.right.world - world, spot.above.world - world);
     const auto normalOf = [&](const SurfacePoint& point) {
@@ -111,10 +111,10 @@ std::optional<SurfaceColor> SurfaceShading::operator()(const SurfaceLayer& layer
     };
     if (!kept(clips_, world)) return std::nullopt;
     const LensAction action = lensAction(lenses_, layer.lens, world);
-    double opacity = std::min(double(layer.layer->style.opacity) * action.opacity, 1.0);
+    double opacity = std::min(double(layer.layer->style.opacity) * double(tint.a) * action.opacity, 1.0);
     if (opacity <= 0) return std::nullopt;
     const glm::dvec3 normal = normalOf(spot.here);
-    glm::dvec3 color = ownColor(layer, spot.here.value);
+    glm::dvec3 color = tint.r >= 0 ? glm::dvec3(glm::vec3(tint)) : ownColor(layer, spot.here.value);
     color = glm::mix(glm::dvec3(luminance(color)), color, action.saturation);
     const Look& look = layer.layer->style.look;
     if (look.any()) {

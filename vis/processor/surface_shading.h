@@ -21,6 +21,9 @@ struct SurfaceSpot {
     SurfacePoint here, right, above;
 };
 
+/// A colour of its own (linear light) and an opacity of a triangle; red below 0: coloured by its values.
+inline constexpr glm::vec4 kNoTint{-1, -1, -1, 1};
+
 /// A visible part of rasterised geometry.
 struct SurfaceColor {
     double along = 0;    ///< distance along the ray
@@ -41,7 +44,8 @@ public:
     /// Distance along the ray to a point.
     double along(glm::dvec3 world) const;
     /// nullopt: nothing is seen there, for a clip, a lens or a look.
-    std::optional<SurfaceColor> operator()(const SurfaceLayer& layer, bool line, const SurfaceSpot& spot) const;
+    std::optional<SurfaceColor> operator()(const SurfaceLayer& layer, bool line, const SurfaceSpot& spot,
+                                           glm::vec4 tint = kNoTint) const;
 
 private:
     glm::dvec3 toViewer(glm::dvec3 world) const;

@@ -13,17 +13,17 @@ Triangle::Triangle(const std::array<glm::dvec4, 3>& corners) : corners_(corners)
     if (const double volume = glm::determinant(all); std::isfinite(volume) && volume != 0) weights_ = glm::inverse(all);
 }
 
-Triangle::Box Triangle::box(glm::ivec2 size) const {
-    if (weights_ == glm::dmat3(0)) return {};
+Triangle::Box Triangle::box(const std::array<glm::dvec4, 3>& corners, glm::ivec2 size, glm::dvec2 jitter) {
+    constexpr double kRounding = 1e-6; // pixels, more than covered() forgives
     glm::dvec2 lo(1e9), hi(-1e9);
-    for (const glm::dvec4& corner : corners_) {
+    for (const glm::dvec4& corner : corners) {
         if (corner.w < 1e-6) return {{0, 0}, size}; // reaches the eye
         lo = glm::min(lo, glm::dvec2(corner) / corner.w);
         hi = glm::max(hi, glm::dvec2(corner) / corner.w);
     }
-    lo = glm::clamp(lo - 0.5, glm::dvec2(0), glm::dvec2(size));
-    hi = glm::clamp(hi + 0.5, glm::dvec2(0), glm::dvec2(size));
-    return {glm::ivec2(glm::floor(lo)), glm::ivec2(glm::ceil(hi))};
+    lo = glm::clamp(glm::ceil(lo - 0.5 - jitter - kRounding), glm::dvec2(0), glm::dvec2(size));
+    hi = glm::clamp(glm::floor(hi - 0.5 - jitter + kRounding) + 1.0, glm::dvec2(0), glm::dvec2(size));
+    return {glm::ivec2(lo), glm::ivec2(hi)};
 }
 
 std::optional<glm::dvec3> Triangle::shares(glm::dvec2 at) const {

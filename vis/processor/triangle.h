@@ -29,11 +29,13 @@ public:
     /// `corners`: x, y in pixels, y up, z and w of clip space, all times w.
     explicit Triangle(const std::array<glm::dvec4, 3>& corners);
 
-    /// The pixels that it may cover within `size`; empty (lo >= hi) if none.
+    /// The pixels within `size` that a triangle with such corners may cover, by their centres, which are shifted by
+    /// `jitter`; empty (lo >= hi) if none, as for most triangles smaller than a pixel.
     struct Box {
         glm::ivec2 lo{0}, hi{0};
+        bool empty() const { return lo.x >= hi.x || lo.y >= hi.y; }
     };
-    Box box(glm::ivec2 size) const;
+    static Box box(const std::array<glm::dvec4, 3>& corners, glm::ivec2 size, glm::dvec2 jitter);
     /// Shares of the corners at a position in the picture, also beyond the edges of the triangle. nullopt: behind the
     /// eye.
     std::optional<glm::dvec3> shares(glm::dvec2 at) const;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,6 +38,10 @@ struct LineSet {
 struct Geometry {
     volume::SurfaceMesh mesh; ///< of the sheet; both sides of a triangle are lit
     LineSet lines;            ///< lit like thin tubes
+    /// Colour (linear light) and opacity of the vertices of the mesh, or empty; red below 0: coloured by the scalar. A
+    /// triangle has the tint of its last vertex. Opacities multiply that of the style.
+    std::vector<glm::vec4> tints;
+    bool translucent = false; ///< some tint has an opacity below 1
 };
 
 struct GeometryLayer {

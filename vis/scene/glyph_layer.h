@@ -38,7 +38,7 @@ struct GlyphPart {
 /// geometry is computed outside the renderer and drawn as Scene::geometry.
 struct GlyphLayer {
     static constexpr std::string_view kType = "glyphs";
-    std::string channel; ///< gives the colours of what no part colours
+    std::string channel; ///< gives the colours of kinds whose parts have none of their own
     GlyphKind kind = GlyphKind::Star;
     std::string direction = {}; ///< vector that glyphs point along; "" = they stand upright
     std::vector<GlyphPart> parts = {};
@@ -56,9 +56,10 @@ struct GlyphLayer {
     bool operator==(const GlyphLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kPlaces = "Places", kColors = "Colours";
-        visit(self.channel, FieldInfo{.key = "channel",
-                                      .doc = "Parameter that gives the colours of what no part of the glyph colours",
-                                      .refersTo = "channel"});
+        visit(self.channel,
+              FieldInfo{.key = "channel",
+                        .doc = "Parameter that gives the colours of glyphs whose parts have none of their own",
+                        .refersTo = "channel"});
         visit(self.kind, FieldInfo{.key = "kind", .doc = "Shape of the glyphs", .names = kGlyphKindNames});
         visit(self.direction, FieldInfo{.key = "direction",
                                         .doc = "Vector that the glyphs point along; empty: they stand upright",
@@ -71,8 +72,8 @@ struct GlyphLayer {
                                     .names = kGlyphPlaceNames,
                                     .group = kPlaces});
         visit(self.even, FieldInfo{.key = "even",
-                                   .doc = "Stand on a grid; else at random with even distances",
-                                   .applies = self.place != GlyphPlace::Cursor,
+                                   .doc = "Stand on a grid; else at random with even distances, as on a surface always",
+                                   .applies = self.place != GlyphPlace::Cursor && self.place != GlyphPlace::Surface,
                                    .group = kPlaces});
         visit(self.from, FieldInfo{.key = "from",
                                    .doc = "First corner of the places, 0 to 1 along each axis of the data",

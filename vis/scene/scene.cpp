@@ -26,8 +26,8 @@ int peelsOf(const Scene& scene) {
         if (!drawn(scene, layer)) continue;
         const bool fades = brushed && layer.brushes != BrushEffect::None &&
                            !(layer.brushes == BrushEffect::Fade && scene.selection.contextOpacity >= 1);
-        const bool translucent = layer.style.opacity < 1 || layer.style.look.silhouette || layer.style.look.boundary ||
-                                 layer.style.look.wire;
+        const bool translucent = layer.style.opacity < 1 || layer.geometry->translucent ||
+                                 layer.style.look.silhouette || layer.style.look.boundary || layer.style.look.wire;
         peels = std::max(peels, translucent || fades || !layer.lens.empty() ? kPeels : 1);
     }
     return peels;

@@ -12,6 +12,7 @@ uniform int cutByBox; // 1: an iso-surface, which ends where the box cuts it
 
 in vec3 world, direction;
 in float value, side;
+flat in vec4 tint; // linear light and opacity; red below 0: coloured by the value
 
 uniform vec3 rayOrigin, forward; // of the ray through the centre of the picture
 uniform int perspective;
@@ -80,13 +81,14 @@ void main() {
 #endif
     if (!clipKept(world)) discard;
     vec2 action = lensAction(lens, world);
-    float alpha = min(opacity * action.x, 1.0);
+    float alpha = min(opacity * tint.a * action.x, 1.0);
     if (alpha <= 0.0) discard;
     float along = perspective == 1 ? distance(world, rayOrigin) : dot(world - rayOrigin, forward);
     if (peel > 0 && along <= texelFetch(former, ivec3(gl_FragCoord.xy, peel - 1), 0).r) discard;
     if (peel > 0 && covers == 1 && texelFetch(formerColors, ivec3(gl_FragCoord.xy, peel - 1), 0).a > 0.998) discard;
     float entries = float(textureSize(colors, 0).x), place = clamp(value * map.x + map.y, 0.0, 1.0);
     vec3 color = isnan(value) ? plain : textureLod(colors, vec2((place * (entries - 1.0) + 0.5) / entries, row), 0.0).rgb;
+    if (tint.r >= 0.0) color = tint.rgb;
     color = mix(vec3(luminance(color)), color, action.y);
 #if LOOKS
     LookSample at = surfaceLook(unit, toViewer, along, dx, dy, turnX, turnY);

@@ -10,6 +10,7 @@ uniform float lineWidth; // pixels
 
 out vec3 world, direction; // direction: along the line
 out float value, side;     // side: -1 .. 1 across the line
+flat out vec4 tint;
 
 void main() {
     vec3 a = from * worldScale + worldOffset, b = to * worldScale + worldOffset;
@@ -21,6 +22,7 @@ void main() {
     world = second ? b : a;
     direction = b - a;
     value = second ? scalars.y : scalars.x;
+    tint = vec4(-1.0, -1.0, -1.0, 1.0);
     gl_Position = second ? clipB : clipA;
     gl_Position.xy += vec2(-along.y, along.x) * side * lineWidth / pixels * gl_Position.w;
 }

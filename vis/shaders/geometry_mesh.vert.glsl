@@ -2,17 +2,20 @@
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in float scalar;
+layout(location = 3) in vec4 ownTint;
 
 uniform vec3 worldScale, worldOffset; // world = sheet * scale + offset
 uniform mat4 worldToClip;
 
 out vec3 world, direction; // direction: the normal, not normalised
 out float value, side;
+flat out vec4 tint; // linear light and opacity; red below 0: coloured by the value
 
 void main() {
     world = position * worldScale + worldOffset;
     direction = normal / worldScale;
     value = scalar;
     side = 0.0;
+    tint = ownTint;
     gl_Position = worldToClip * vec4(world, 1.0);
 }

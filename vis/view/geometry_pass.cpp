@@ -18,15 +18,17 @@ constexpr int kColors = 1024; ///< entries per row of the colour table
 /// Texture units that no ray plan uses.
 constexpr int kTableUnit = 42, kFormerUnit = 43, kGrainUnit = 45, kFormerColorUnit = 46;
 
+constexpr GLuint kTintAttribute = 3;
+
 template <class T> Buffer filledBuffer(const std::vector<T>& content, const char* label) {
     return makeBuffer(GLsizeiptr(content.size() * sizeof(T)), content.data(), 0, label);
 }
 
-/// Vertex attribute `index` with `count` floats, at offset `first` (floats) within an element.
-void attribute(GLuint array, GLuint index, int count, int first) {
+/// Vertex attribute `index` with `count` floats, at offset `first` (floats) within an element of a buffer.
+void attribute(GLuint array, GLuint index, int count, int first, GLuint buffer = 0) {
     glEnableVertexArrayAttrib(array, index);
     glVertexArrayAttribFormat(array, index, count, GL_FLOAT, GL_FALSE, GLuint(first) * GLuint(sizeof(float)));
-    glVertexArrayAttribBinding(array, index, 0);
+    glVertexArrayAttribBinding(array, index, buffer);
 }
 
 /// Position, normal and scalar per vertex.
@@ -100,6 +102,11 @@ const GeometryPass::Uploaded& GeometryPass::upload(const std::shared_ptr<const G
         attribute(up.mesh.name(), 0, 3, 0);
         attribute(up.mesh.name(), 1, 3, 3);
         attribute(up.mesh.name(), 2, 1, 6);
+        if (!geometry->tints.empty()) {
+            up.tints = filledBuffer(geometry->tints, "mesh tints");
+            glVertexArrayVertexBuffer(up.mesh.name(), 1, up.tints.name(), 0, sizeof(glm::vec4));
+            attribute(up.mesh.name(), kTintAttribute, 4, 0, 1);
+        }
     }
     if (const std::vector<float> segments = segmentsOf(geometry->lines); !segments.empty()) {
         up.segments = filledBuffer(segments, "line segments");
@@ -261,6 +268,7 @@ void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) c
     setLookUniforms(own, {layer.style.look.any() ? &layer.style.look : nullptr}, job.scene, frame, job.info.lattice,
                     job.pictureSize, kGrainUnit);
     glUseProgram(own.name());
+    glVertexAttrib4f(kTintAttribute, -1, -1, -1, 1); // of a mesh without tints
     glBindVertexArray(each.lines ? each.up->lines.name() : each.up->mesh.name());
     if (each.lines)
         glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, each.up->segmentCount);

@@ -11,6 +11,7 @@
 #include "app/ui/widgets.h"
 #include "app/values/selection_text.h"
 #include "app/views/data/derived_list.h"
+#include "app/views/data/glyph_part_list.h"
 #include "app/views/data/selection_rows.h"
 #include "codec/archive/archive.h"
 #include "codec/container/exactness.h"
@@ -185,6 +186,12 @@ void drawParameters(ViewContext& context, const volume::DatasetInfo& info) {
             fittedText(titleWithUnit(channel.name, channel.unit + (parameter.unitGuessed ? " (guessed)" : "")));
             if (parameter.unitGuessed && ImGui::IsItemHovered())
                 tooltip("The file states no unit; this is the usual one for the name. Use --unit to state another.");
+        }
+        // A part of a glyph takes it (glyph_part_list.h).
+        if (ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceAllowNullID)) {
+            ImGui::SetDragDropPayload(kParameterPayload, channel.name.c_str(), channel.name.size() + 1);
+            ImGui::TextUnformatted(channel.name.c_str());
+            ImGui::EndDragDropSource();
         }
         ImGui::PopID();
         if (over) {

@@ -6,6 +6,7 @@
 #include "app/session/own_functions.h"
 #include "app/session/session_json.h"
 #include "app/views/timeline/keyframes.h"
+#include "vis/glyphs/glyph_parts.h"
 
 #include <algorithm>
 #include <imgui.h>
@@ -18,7 +19,7 @@ namespace {
 constexpr const char* kLayerPayload = "tessera-layer";
 
 Icon iconOf(const vis::Technique& technique) {
-    static constexpr Icon kIcons[] = {icons::kCube, icons::kIso, icons::kSlice, icons::kFlow};
+    static constexpr Icon kIcons[] = {icons::kCube, icons::kIso, icons::kSlice, icons::kFlow, icons::kGlyph};
     return kIcons[technique.index()];
 }
 
@@ -41,7 +42,11 @@ vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std
         const std::string vector = firstVector(info);
         layer.technique = vis::FlowLayer{.vector = vector, .channel = vector.empty() ? name : "|" + vector + "|"};
     }
-    if (kind == 4) layer.technique = vis::GlyphLayer{.channel = name};
+    if (kind == 4) {
+        vis::GlyphLayer glyphs{.channel = name};
+        glyphs.parts = vis::firstGlyphParts(glyphs.kind, info);
+        layer.technique = glyphs;
+    }
     return layer;
 }
 

@@ -5,8 +5,10 @@
 #include "app/session/own_functions.h"
 #include "app/tools/lens_list.h"
 #include "app/ui/parameter_widget.h"
+#include "app/views/data/glyph_part_list.h"
 #include "app/views/data/layer_list.h"
 #include "app/views/data/task_settings.h"
+#include "vis/glyphs/glyph_parts.h"
 #include "volume/flow/flow_channels.h"
 
 #include <algorithm>
@@ -74,9 +76,13 @@ void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::
             ImGui::InputTextWithHint("##name", layerTitle(layer, context.source->info()).c_str(), &layer.name);
         } else if (field.key == "technique") {
             auto* const surface = std::get_if<vis::IsoLayer>(&layer.technique);
+            auto* const glyphs = std::get_if<vis::GlyphLayer>(&layer.technique);
+            const auto kind = glyphs ? glyphs->kind : vis::GlyphKind();
             drawMembers(member.inside(), place.under(field.key), [&](Value, const FieldInfo& own) {
+                if (glyphs && own.key == "parts") return drawGlyphParts(widgets, *glyphs);
                 return surface && drawRegion(widgets, *surface, *widgets.info, own);
             });
+            if (glyphs && glyphs->kind != kind) glyphs->parts = vis::partsOnKind(glyphs->parts, kind, glyphs->kind);
         } else if (field.key == "lens") {
             drawLens(widgets, context.session, layer);
         } else if (field.key == "transfer") {

@@ -4,6 +4,7 @@
 #include "app/pane/inner_view.h"
 #include "app/pane/scale_bar.h"
 #include "app/pane/view_parts.h"
+#include "app/queries/readout.h"
 #include "app/queries/scene_query.h"
 #include "app/session/shown_scene.h"
 #include "app/tools/brush_list.h"
@@ -68,16 +69,15 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, vis::ViewT
               const PictureBox& picture, const vis::WorldFrame& world) {
     if (!ImGui::BeginPopup(id)) return;
     const ImVec2 at = ImGui::GetMousePosOnOpeningCurrentPopup(); // not known once an item or Esc has closed the menu
-    const double aspect = picture.aspect();
     if (escapePressed()) ImGui::CloseCurrentPopup();
     vis::Camera& camera = context.session.camera;
-    if (ImGui::MenuItem("Reset view", "R")) resetCamera(camera, world, aspect);
+    if (ImGui::MenuItem("Reset view", "R")) resetCamera(camera, world, picture.aspect());
     static constexpr const char* kKeys[] = {"1", "Shift+1", "Shift+3", "3", "7", "Shift+7", "9"};
     for (std::size_t i = 0; i < std::size(vis::kStandardViewNames); ++i) {
         std::string name(vis::kStandardViewNames[i]);
         name[0] = static_cast<char>(name[0] - 'a' + 'A');
         if (ImGui::MenuItem(name.c_str(), kKeys[i]))
-            lookAlong(camera, static_cast<vis::StandardView>(i), world, aspect);
+            lookAlong(camera, static_cast<vis::StandardView>(i), world, picture.aspect());
     }
     ImGui::Separator();
     bool parallel = camera.projection == vis::Projection::Orthographic;
@@ -205,8 +205,8 @@ private:
 
     /// Draws lines and handles in space, besides the scene.
     void drawObjects(const SpaceFrame& space) {
-        if (view_.showCursor && shown_.cursor && framed()) drawCursor3d(*list_, space, session_.cursor);
-        if (view_.showCursor && shown_.cursor && framed()) drawProbes(*list_, space, session_.probes);
+        if (view_.showCursor && shown_.cursor && framed())
+            drawCursor3d(*list_, space, session_.cursor), drawProbes(*list_, space, session_.probes);
         if (!shown_.outlines) return;
         drawSpaceBrushes(*list_, space, session_.selection);
         drawProfileLines(*list_, space, session_);
@@ -243,7 +243,7 @@ private:
 
     void drawLegend() {
         if (!showsLegend()) return;
-        const std::vector<LegendEntry> entries = sceneLegends(session_, info_, view_.drawingLegend);
+        const auto entries = withValuesAtCursor(context_, sceneLegends(session_, info_, view_.drawingLegend));
         if (view_.multiple && entries.size() == 1 && drawUprightLegend(entries.front())) return;
         const LegendArea area = drawLegends(*list_, entries, legendRoom(), cache_.legend);
         if (cache_.legend.corner == LegendCorner::BottomRight) legendLeft_ = area.min.x;
@@ -252,7 +252,7 @@ private:
 
     /// A narrow bar at the right edge, beside the object of a small picture; false where it would not do.
     bool drawUprightLegend(const LegendEntry& entry) {
-        if (entry.swatch || entry.opacity || entry.regions || !entry.names.empty()) return false;
+        if (entry.swatch || entry.glyph || entry.opacity || entry.regions || !entry.names.empty()) return false;
         const std::string title = titleWithUnit(entry.title, entry.unit);
         const float width = std::max(ImGui::CalcTextSize(title.c_str()).x, em() * 5), line = ImGui::GetFontSize();
         const float height = std::min(em() * 10, picture_.size.y - em() * 5.5f);
