@@ -152,7 +152,7 @@ TEST_F(ParallelHands, ADragBetweenAxesSelectsTheLinesThere) {
     showAxes();
     const ParallelAxis left = plot().axes[0], right = plot().axes[1];
     const float x = std::floor((left.x + right.x) / 2);
-    const ImVec2 from{x, onAxis(0, 0.75).y}, to{x, onAxis(0, 0.4).y};
+    const ImVec2 from{x, onAxis(0, 0.35).y}, to{x, onAxis(0, 0.2).y};
     drag(from, to);
     settle();
     ASSERT_EQ(session().selection.brushes.size(), 1u);

@@ -83,23 +83,34 @@ void drawMoreOf(ViewContext& context, ToolRow& tools, ParallelCoordinatesView& v
     ImGui::EndPopup();
 }
 
-/// The share of samples that is selected, and the button that removes the brushes.
+/// The share of samples that is selected, and the button that removes the brushes. Their space is reserved even without
+/// brushes: else the plots would move under the mouse while the first brush is drawn.
 void drawSelected(ViewContext& context, ToolRow& tools, const ParallelResult* result) {
     const Session& session = context.session;
-    if (session.selection.brushes.empty()) return drawNote(tools, "drag on an axis or between two to brush");
-    if (tools.next(ImGui::GetFrameHeight(), em() * 0.3f) &&
-        iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)"))
+    const float button = ImGui::GetFrameHeight(), gap = em() * 0.3f;
+    const float least = button + gap + ImGui::CalcTextSize("99.99 % selected").x;
+    if (!tools.next(least)) return;
+    const ImVec2 place = ImGui::GetCursorPos();
+    if (session.selection.brushes.empty()) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextDisabled("%s", fitText("drag to brush", least).c_str());
+        if (ImGui::IsItemHovered())
+            tooltip("Drag on an axis to select values, between two axes to select lines that cross or rise alike");
+    } else if (iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)")) {
         clearBrushes(context);
-    if (!result || !result->brushed() || result->densities.axes.empty()) return;
-    double selected = 0;
-    const volume::PlaceCounts& counts = result->densities.axes.front();
-    for (std::size_t i = 0; i < counts.all.size(); ++i) selected += counts.selectedAt(i);
-    const std::string text = formatShare(selected / std::max(1.0, result->samples())) + " selected";
-    if (!tools.next(ImGui::CalcTextSize(text.c_str()).x)) return;
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(text.c_str());
-    if (ImGui::IsItemHovered())
-        tooltip((selectionName(session) + ": share of the samples that have a value on any of the axes").c_str());
+    }
+    if (result && result->brushed() && !session.selection.brushes.empty()) {
+        double selected = 0;
+        const volume::PlaceCounts& counts = result->densities.axes.front();
+        for (std::size_t i = 0; i < counts.all.size(); ++i) selected += counts.selectedAt(i);
+        ImGui::SameLine(0, gap);
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted((formatShare(selected / std::max(1.0, result->samples())) + " selected").c_str());
+        if (ImGui::IsItemHovered())
+            tooltip((selectionName(session) + ": share of the samples that have a value on any of the axes").c_str());
+    }
+    ImGui::SetCursorPos(place);
+    ImGui::Dummy({least, button});
 }
 
 std::vector<glm::vec3> focusOf(const Session& session, bool dark) {

@@ -107,12 +107,11 @@ void drawCloudToolbar(ViewContext& context, Scatter3dView& view, const std::vect
              .table = [result, axes, selected = result->brushed() ? selectionName(context.session) : std::string()](
                           const Progress&) { return cloudTable(*result, axes, selected); },
              .brushed = result->brushed()});
-    if (!context.session.selection.brushes.empty() && tools.next(ImGui::GetFrameHeight(), em() * 0.3f) &&
-        iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)"))
+    if (tools.next(ImGui::GetFrameHeight(), em() * 0.3f) && // also without brushes: the cloud stays where it is
+        iconButton(context, "clear", icons::kTrash, "Remove all brushes (Esc)",
+                   !context.session.selection.brushes.empty()))
         clearBrushes(context);
-    const bool faced = facedAxes(cloudDirections(view.turn)).has_value();
-    drawNote(tools, faced ? "draw around samples to select; the middle button turns"
-                          : "drag to turn; face two axes (xz, yz, xy) to select");
+    drawNote(tools, "drag to turn; xz, yz, xy: to draw around samples");
     drawOrigin(context, tools, channels);
 }
 
