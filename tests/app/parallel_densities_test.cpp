@@ -1,4 +1,5 @@
 #include "app/views/parallel/parallel_query.h"
+#include "tests/app/fed_imgui.h"
 #include "tests/app/formula_cell.h"
 #include "volume/sources/memory_source.h"
 
@@ -34,8 +35,9 @@ int placeOn(const volume::DensityAxis& axis, const std::string& name, Place at, 
     return std::min(bins - 1, int(std::floor((v - lo) / (hi - lo) * bins)));
 }
 
-class Densities : public testing::Test {
+class Densities : public FedImGui { // colours of brushes follow the theme
 protected:
+    Densities() : FedImGui({640, 480}) {}
     int channel(const char* name) const { return *source->info().findChannel(name); }
     volume::DensityAxis axis(const char* name, bool logarithmic = false) const {
         return {channel(name), formula::rangeOf(name), logarithmic};

@@ -18,7 +18,7 @@ namespace {
 constexpr glm::dvec2 kNaturalGap{92, 190}; ///< between two axes, points
 constexpr double kPixelsPerPoint = 3;      ///< of the pictures between axes
 constexpr double kThinLine = 0.7, kWideLine = 1.4, kLeastGap = 5;
-constexpr double kHistogramShare = 0.2; ///< of a gap
+constexpr float kOnWhiteGround = 0.7f; ///< of colours of brushes, which are bright
 
 glm::vec4 inked(glm::vec3 color, float alpha = 1) {
     return {color, alpha};
@@ -62,6 +62,7 @@ public:
         pictures();
         if (look_.histograms) histograms();
         for (std::size_t i = 0; i < plot_.axes.size(); ++i) axis(i);
+        for (std::size_t i = 0; form_.outlines && i < plot_.axes.size(); ++i) brushes(plot_.axes[i]);
         if (form_.cursor && index < look_.cursor.size()) cursor(look_.cursor[index]);
         if (!state_.name.empty() && form_.title) words({text_, top + 1.2 * text_}, state_.name, 0);
     }
@@ -101,7 +102,7 @@ private:
     }
     void histograms() {
         const int bins = state_.result->densities.bins;
-        const double widest = plot_.axes.size() > 1 ? double(plot_.gap()) * kHistogramShare : 8 * text_;
+        const double widest = double(histogramLength(plot_, float(text_)));
         for (std::size_t a = 0; a < plot_.axes.size(); ++a) {
             const volume::PlaceCounts& counts = state_.result->densities.axes[a];
             double most = 1;
@@ -109,25 +110,49 @@ private:
             const auto length = [&](double count) {
                 return widest * (look_.logDensity ? std::log1p(count) / std::log1p(most) : count / most);
             };
-            for (int bin = 0; bin < bins; ++bin) {
+            std::vector<double> from(std::size_t(bins), 0), to = from;
+            for (std::size_t bin = 0; bin < to.size(); ++bin) to[bin] = length(double(counts.all[bin]));
+            bars(a, from, to, {0.53f, 0.57f, 0.64f, 0.6f});
+            for (std::size_t g = 0; g < counts.selected.size(); ++g) {
+                for (std::size_t bin = 0; bin < to.size(); ++bin) {
+                    const double selected = counts.selectedAt(bin);
+                    to[bin] = from[bin];
+                    if (selected > 0) to[bin] += length(selected) * counts.selected[g][bin] / selected;
+                }
+                bars(a, from, to, inked(look_.focus[std::min(g, look_.focus.size() - 1)]));
+                from = to;
+            }
+        }
+    }
+    /// Bars beside an axis as one area for each run of bins that have some.
+    void bars(std::size_t a, const std::vector<double>& from, const std::vector<double>& to, glm::vec4 color) {
+        const ParallelAxis& own = plot_.axes[a];
+        const auto bins = int(to.size());
+        for (int bin = 0; bin < bins;) {
+            std::vector<glm::dvec2> out, back;
+            for (; bin < bins && to[std::size_t(bin)] > from[std::size_t(bin)]; ++bin) {
                 const Range rows = *placeRows(plot_.rows(a), bins, bin);
-                const ParallelAxis& own = plot_.axes[a];
-                const auto bar = [&](double from, double to, glm::vec4 color) {
-                    if (to > from)
-                        out_.push_back(
-                            {Rect{.box = {{own.x + from, own.top + rows.lo}, {own.x + to, own.top + rows.hi}},
-                                  .color = color}});
-                };
-                const auto at = std::size_t(bin);
-                bar(0, length(double(counts.all[at])), {0.53f, 0.57f, 0.64f, 0.6f});
-                const double selected = counts.selectedAt(at);
-                double from = 0;
-                for (std::size_t g = 0; selected > 0 && g < counts.selected.size(); ++g) {
-                    const double part = length(selected) * counts.selected[g][at] / selected;
-                    bar(from, from + part, inked(look_.focus[std::min(g, look_.focus.size() - 1)]));
-                    from += part;
+                for (const double row : own.flipped ? std::array{rows.lo, rows.hi} : std::array{rows.hi, rows.lo}) {
+                    out.emplace_back(double(own.x) + to[std::size_t(bin)], double(own.top) + row);
+                    back.emplace_back(double(own.x) + from[std::size_t(bin)], double(own.top) + row);
                 }
             }
+            out.insert(out.end(), back.rbegin(), back.rend());
+            if (!out.empty()) out_.push_back({Polygon{.points = std::move(out), .color = color}});
+            while (bin < bins && !(to[std::size_t(bin)] > from[std::size_t(bin)])) ++bin;
+        }
+    }
+    void brushes(const ParallelAxis& own) {
+        for (const ParallelBand& band : look_.brushed) {
+            if (band.channel != own.channel.name) continue;
+            const double a = double(own.pixel(band.range.lo)), b = double(own.pixel(band.range.hi));
+            const double top = std::clamp(std::min(a, b), double(own.top), double(own.bottom)),
+                         bottom = std::clamp(std::max(a, b), double(own.top), double(own.bottom)), half = 0.35 * text_;
+            const glm::vec4 color = inked(form_.dark ? band.color : band.color * kOnWhiteGround);
+            out_.push_back({Rect{.box = {{double(own.x) - half, top}, {double(own.x) + half, bottom}},
+                                 .color = color,
+                                 .line = kWideLine * scale_}});
+            if (band.taken) line({double(own.x) - half, bottom}, {double(own.x) + half, top}, color, kThinLine);
         }
     }
     void axis(std::size_t i) {
@@ -192,6 +217,13 @@ private:
     std::vector<Mark>& out_;
 };
 
+/// Room behind the last axis: for its histogram and half its title.
+double lastRoom(const ParallelAxis& axis, bool histograms, const PageForm& form) {
+    const PageTitle title = pageTitle(axis, axisTicks(axis, form.text * 1.1).note, form);
+    const double half = std::max(pageTextWidth(title.name, form.text), pageTextWidth(title.rest, form.text)) / 2;
+    return std::max(std::min(half, 5 * form.text), (histograms ? 3.8 : 1.0) * form.text) + 0.3 * form.text;
+}
+
 double widestNumber(const ParallelAxis& axis, double text) {
     double widest = pageTextWidth("absent", text);
     for (const std::string& each : axisTicks(axis, text * 1.1).texts)
@@ -220,8 +252,9 @@ VectorPage parallelPage(const std::vector<ParallelState>& states, const Parallel
             const double top = each * double(s) + named + above;
             for (ParallelAxis& axis : plot.axes) axis.top = 0, axis.bottom = float(std::max(1.0, bottom - top));
             const double numbers = form.axes ? widestNumber(plot.axes.front(), text) + 9 * scale : 6 * scale;
+            const double right = lastRoom(plot.axes.back(), look.histograms, form);
             placeAxes(plot, {0, float(top)}, {float(page.size.x), float(bottom)}, marks,
-                      float(std::max(numbers, 2.5 * text)), float(text * 1.1));
+                      float(std::max(numbers, 2.5 * text)), float(right), float(text * 1.1));
             return bottom - top;
         };
         double height = placed(3.2 * text);

@@ -16,10 +16,19 @@ struct ParallelState {
     std::vector<ParallelAxis> axes; ///< of the result, without places
 };
 
+/// A range on an axis that a brush selects; `taken`: it takes away.
+struct ParallelBand {
+    std::string channel;
+    Range range;
+    glm::vec3 color{0};
+    bool taken = false;
+};
+
 struct ParallelPageLook {
     bool logDensity = true, histograms = true;
     std::vector<glm::vec3> focus;                           ///< by group; of pages with a light ground as they are
     std::vector<std::vector<std::optional<double>>> cursor; ///< by state and axis; absent: empty
+    std::vector<ParallelBand> brushed = {};
 };
 
 /// The states below each other. Throws Error where texts leave no room for the plots.

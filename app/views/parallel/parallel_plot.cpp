@@ -12,6 +12,7 @@ namespace {
 
 constexpr float kMarkHeight = 0.9f, kMarkGap = 0.7f; ///< of the strip for what is absent, lines
 constexpr float kWidestHistogram = 0.2f;             ///< of a gap
+constexpr float kLongestBar = 3.5f;                  ///< lines
 constexpr int kMostGapRows = 2048;                   ///< of a picture
 
 GapInk inkOfColor(ImU32 color) {
@@ -37,13 +38,17 @@ bool lacksAny(const volume::AxisDensities& densities) {
     return std::ranges::any_of(densities.axes, [&](const volume::PlaceCounts& axis) { return axis.all[absent] > 0; });
 }
 
-void placeAxes(ParallelPlot& plot, ImVec2 min, ImVec2 max, bool marks, float numbers, float line) {
+float histogramLength(const ParallelPlot& plot, float line) {
+    return plot.axes.size() > 1 ? std::min(plot.gap() * kWidestHistogram, line * kLongestBar) : line * 2 * kLongestBar;
+}
+
+void placeAxes(ParallelPlot& plot, ImVec2 min, ImVec2 max, bool marks, float left, float right, float line) {
     const float strip = marks ? line * (kMarkGap + kMarkHeight) : 0;
     const std::size_t count = plot.axes.size();
-    const float left = min.x + numbers, right = max.x - line * 2;
+    const float from = min.x + left, to = max.x - right;
     for (std::size_t i = 0; i < count; ++i) {
         ParallelAxis& axis = plot.axes[i];
-        axis.x = std::round(count > 1 ? left + (right - left) * float(i) / float(count - 1) : (left + right) / 2);
+        axis.x = std::round(count > 1 ? from + (to - from) * float(i) / float(count - 1) : (from + to) / 2);
         axis.top = std::round(min.y);
         axis.bottom = std::round(std::max(min.y + line, max.y - strip - line * 0.4f));
     }
@@ -140,7 +145,7 @@ void drawAxisHistograms(ImDrawList& draw, const ParallelPlot& plot, const Parall
                         const std::vector<ImU32>& focus) {
     const PlotColors colors = plotColors();
     const int bins = result.densities.bins;
-    const float widest = plot.axes.size() > 1 ? plot.gap() * kWidestHistogram : em() * 8;
+    const float widest = histogramLength(plot, em());
     for (std::size_t a = 0; a < plot.axes.size() && a < result.densities.axes.size(); ++a) {
         const volume::PlaceCounts& counts = result.densities.axes[a];
         double most = 1;

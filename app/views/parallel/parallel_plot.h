@@ -33,9 +33,12 @@ struct ParallelLayoutCache : ViewCache {
 /// Whether a sample that has a value on an axis lacks one on another.
 bool lacksAny(const volume::AxisDensities& densities);
 
-/// Places axes side by side between two corners; `marks`: with the strip. `numbers`: width of numbers beside the first
-/// axis, `line`: height of a line.
-void placeAxes(ParallelPlot& plot, ImVec2 min, ImVec2 max, bool marks, float numbers, float line);
+/// Places axes side by side between two corners; `marks`: with the strip. `left`, `right`: room before the first axis
+/// and behind the last, `line`: height of a line.
+void placeAxes(ParallelPlot& plot, ImVec2 min, ImVec2 max, bool marks, float left, float right, float line);
+
+/// Length of the longest bar of histograms on axes.
+float histogramLength(const ParallelPlot& plot, float line);
 
 /// How densities become colours, on a light or dark ground; `focus`: brushGroups().colors.
 GapLook gapLook(bool logDensity, bool dark, const std::vector<ImU32>& focus);

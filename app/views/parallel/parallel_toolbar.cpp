@@ -115,7 +115,15 @@ std::vector<glm::vec3> focusOf(const Session& session, bool dark) {
 ViewExport parallelExport(ViewContext& context, const ParallelCoordinatesView& view,
                           const std::vector<ParallelState>& states) {
     const bool brushed = states.front().result->brushed();
-    ParallelPageLook look{.logDensity = view.logDensity, .histograms = view.histograms, .focus = {}, .cursor = {}};
+    ParallelPageLook look{
+        .logDensity = view.logDensity, .histograms = view.histograms, .focus = {}, .cursor = {}, .brushed = {}};
+    for (const vis::Brush& brush : context.session.selection.brushes)
+        if (const auto* range = std::get_if<vis::RangeRegion>(&brush.region); range && brush.enabled)
+            for (const vis::BrushInterval& each : range->intervals)
+                look.brushed.push_back({each.channel,
+                                        {each.lo, each.hi},
+                                        brush.color,
+                                        brush.inverted != (brush.combine == vis::BrushCombine::Minus)});
     const Readout& cursor = sharedReadout(context);
     for (std::size_t s = 0; s < states.size() && view.times.empty(); ++s) {
         auto& values = look.cursor.emplace_back();

@@ -18,6 +18,7 @@ constexpr int kCorrelationBins = 4;    ///< correlation does not depend on them
 constexpr float kAxisWidth = 0.9f;     ///< of what takes the mouse left and right of an axis, em
 constexpr double kLeastZoom = 1e-4;    ///< of the axis
 constexpr float kLeastGapWidth = 1.5f; ///< em
+constexpr float kMostRight = 3.5f;     ///< of room behind the last axis, em
 
 struct ParallelCache : ParallelLayoutCache {
     AsyncDensities answers;
@@ -259,7 +260,10 @@ void drawParallelPlots(ViewContext& context, ParallelCache& cache, ParallelCoord
         for (const std::string& text : axisTicks(plot.axes.front(), double(em())).texts)
             numbers = std::max(numbers, std::min(ImGui::CalcTextSize(text.c_str()).x, em() * 6));
         numbers = std::max(numbers + em() * 0.8f, em() * 2);
-        placeAxes(plot, {min.x, min.y + above}, {min.x + room.x, min.y + each}, marks, numbers, em());
+        const std::string last = axisTitle(plot.axes.back(), axisTicks(plot.axes.back(), double(em())).note);
+        const float title = std::min(ImGui::CalcTextSize(last.c_str()).x / 2, em() * kMostRight);
+        const float right = std::max(title, em() * (view.histograms ? kMostRight : 1)) + em() * 0.3f;
+        placeAxes(plot, {min.x, min.y + above}, {min.x + room.x, min.y + each}, marks, numbers, right, em());
         if (plot.axes.size() > 1 && plot.gap() < em() * kLeastGapWidth)
             return drawHint("Not enough room", "Enlarge the pane or choose fewer parameters.");
         if (named) {

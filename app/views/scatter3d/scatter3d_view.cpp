@@ -163,9 +163,13 @@ void drawCloudAxes(ImDrawList& draw, const CloudPlace& place, const std::vector<
             text(on + normal * away, ticks.texts[t], colors.text);
         }
         const std::string title = axisTitle(measured, ticks.note);
-        const double half = double(ImGui::CalcTextSize(title.c_str()).x) / 2;
-        text((a + b) * 0.5 + normal * (double(em()) * kAxisTitleAway + widest + std::abs(normal.x) * half), title,
-             colors.faint);
+        const double away = double(em()) * kAxisTitleAway + widest;
+        const glm::dvec2 middle = (a + b) * 0.5 + normal * away;
+        if (steep)
+            addTextUpwards(draw, {float(middle.x), float(middle.y)}, colors.faint, title.c_str());
+        else
+            text(middle + normal * std::abs(normal.x) * double(ImGui::CalcTextSize(title.c_str()).x) * 0.5, title,
+                 colors.faint);
     }
 }
 
