@@ -46,7 +46,8 @@ Field smoothNoise(glm::ivec3 size, double sigma, unsigned seed) {
 
 WorthQuery queryOf(const BrickSource& source, WorthSearch search = WorthSearch::Views) {
     const DatasetInfo& info = source.info();
-    WorthQuery query{.search = search};
+    WorthQuery query;
+    query.search = search;
     const std::vector<Channel> channels = info.channels();
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const Parameter& parameter = info.parameters[std::size_t(channels[c].parameter)];

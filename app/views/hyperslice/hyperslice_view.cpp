@@ -189,8 +189,8 @@ private:
         const float room = layout.gap / 2 - 1; // numbers at the ends of neighbours stay apart
         if (row + 1 == axes_.size()) {
             const AxisLabel& label = axes_[column].label;
-            drawAxis(draw, frame, AxisSide::Bottom, label.title(), label.unit.name, frame.min.x - room,
-                     frame.max.x + room, {.ticks = label.ticks, .scale = label.scale()});
+            drawAxis(draw, frame, AxisSide::Bottom, label.title(), label.unit.name, frame.min.x, frame.max.x,
+                     {.ticks = label.ticks, .scale = label.scale()});
         }
         if (column == 0 && row > 0) {
             const AxisLabel& label = axes_[row].label;
