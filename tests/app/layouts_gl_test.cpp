@@ -114,7 +114,7 @@ const std::vector<Shipped>& shipped() {
         {"parallel",
          "data history layers log parallelCoordinates slices timeline transfer volume",
          kTemperature,
-         {{"parallelCoordinates", Orange, 0.02}}},
+         {{"parallelCoordinates", Orange, 0.0136}}},
         {"shadowCube",
          "data layers shadowCube slices timeline transfer",
          kTemperature,
