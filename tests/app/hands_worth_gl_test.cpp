@@ -2,17 +2,34 @@
 #include "app/pane/view_parts.h"
 #include "app/views/worth/worth_data.h"
 #include "tests/app/hands_fixture.h"
+#include "volume/synthetic/models.h"
 
 /// The mouse in the list of what is worth seeing.
 namespace tessera::app {
 namespace {
 
-class WorthHands : public Hands {};
+class WorthHands : public Hands {
+protected:
+    /// The list of the planted events, of the last time.
+    void showPlanted() {
+        Opened opened;
+        opened.source = opened.numbers = volume::makeMemorySource(volume::makeModel("planted", {{"times", 3}}), {});
+        DataRef data;
+        data.model = "planted";
+        opened.document.session = defaultSession(opened.source->info(), data);
+        Session& session = opened.document.session;
+        session.views = {{"pane", WorthSeeingView{}}};
+        session.time = opened.source->info().times.back();
+        repair(session.dock, paneKeys(session));
+        opened.document.history.reset(session);
+        workbench.install(std::move(opened));
+        frames.emplace(glm::ivec2(520, 460));
+        settle();
+    }
+};
 
 TEST_F(WorthHands, AClickOpensTheViewAsOneStep) {
-    WorthSeeingView all; // of formulas without events
-    all.falseDiscoveries = 0.5f;
-    show(all, {520, 460});
+    showPlanted();
     const volume::DatasetInfo& info = workbench.numbers()->info();
     const WorthQuestion question =
         worthQuestion(session(), info, view<WorthSeeingView>(), chosenChannels(info, {}, 32));

@@ -29,6 +29,7 @@ std::string twoDigits(double number) {
 
 /// A chance in few characters: "0.013", "3e-09".
 std::string chanceText(double p) {
+    if (p < 1e-99) return "below 1e-99";
     char text[32];
     std::snprintf(text, sizeof text, p > 0 && p < 1e-3 ? "%.0e" : "%.2g", p);
     return text;
@@ -151,7 +152,8 @@ std::string sentenceOf(const Finding& of, const WorthQuestion& question, const v
 }
 
 std::string evidenceOf(const Finding& of) {
-    std::string text = "p = " + chanceText(of.p) + ", false discovery rate " + chanceText(of.q) + "; " +
+    const std::string chance = chanceText(of.p);
+    std::string text = (of.p < 1e-99 ? "p " : "p = ") + chance + ", false discovery rate " + chanceText(of.q) + "; " +
                        formatCount(of.samples) + " samples";
     switch (of.kind) {
     case FindingKind::Outliers:

@@ -83,13 +83,13 @@ void drawPicture(ImDrawList& draw, const volume::WorthPicture& picture, ImVec2 l
 }
 
 /// One row: rank, picture, sentence, and below it what stands behind its numbers. True if it was clicked.
-bool drawRow(std::size_t rank, const volume::WorthPicture& picture, const std::string& sentence,
-             const std::string& evidence, bool open) {
+bool drawRow(std::size_t rank, const volume::WorthPicture& picture, const std::string& finding,
+             const std::string& numbers, bool open) {
     const float pad = em() * 0.35f, side = em() * 3.2f, left = em() * 1.9f;
     const float width = ImGui::GetContentRegionAvail().x, text = left + side * 1.35f + em() * 0.7f;
     const float wrap = std::max(em() * 6, width - text - pad);
-    const ImVec2 lines = ImGui::CalcTextSize(sentence.c_str(), nullptr, false, wrap);
-    const ImVec2 below = ImGui::CalcTextSize(evidence.c_str(), nullptr, false, wrap);
+    const std::string sentence = wrappedAtSpaces(finding, wrap), evidence = wrappedAtSpaces(numbers, wrap);
+    const ImVec2 lines = ImGui::CalcTextSize(sentence.c_str()), below = ImGui::CalcTextSize(evidence.c_str());
     const float height = std::max(side, lines.y + below.y) + 2 * pad;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::PushID(static_cast<int>(rank));
@@ -102,10 +102,8 @@ bool drawRow(std::size_t rank, const volume::WorthPicture& picture, const std::s
     draw.AddText({at.x + pad, at.y + pad}, colors.faint, std::to_string(rank).c_str());
     const ImVec2 lo{at.x + left, at.y + pad};
     drawPicture(draw, picture, lo, {lo.x + side * 1.35f, lo.y + side});
-    ImFont* const font = ImGui::GetFont();
-    draw.AddText(font, ImGui::GetFontSize(), {at.x + text, at.y + pad}, colors.text, sentence.c_str(), nullptr, wrap);
-    draw.AddText(font, ImGui::GetFontSize(), {at.x + text, at.y + pad + lines.y}, colors.faint, evidence.c_str(),
-                 nullptr, wrap);
+    draw.AddText({at.x + text, at.y + pad}, colors.text, sentence.c_str());
+    draw.AddText({at.x + text, at.y + pad + lines.y}, colors.faint, evidence.c_str());
     return clicked;
 }
 
