@@ -17,10 +17,10 @@ namespace tessera::app {
 
 namespace {
 
-constexpr float kLine = 1.2f, kPicture = 5.2f; // em
+constexpr float kPartLine = 1.2f, kGlyphPicture = 5.2f; // em
 
 /// A position of a glyph as its picture shows it: x to the right, y upwards, z to the viewer.
-glm::dvec3 seen(glm::dvec3 at, bool flat) {
+glm::dvec3 legendView(glm::dvec3 at, bool flat) {
     constexpr double kTurn = 0.5, kLean = 0.4; // radians
     if (flat) return {at.x, at.y * std::cos(0.25) + at.z * std::sin(0.25), at.z * std::cos(0.25)};
     const double x = at.x * std::cos(kTurn) - at.y * std::sin(kTurn),
@@ -47,7 +47,7 @@ std::vector<double> sharesOf(const GlyphLegend& legend) {
     return shares;
 }
 
-std::string rangeText(const GlyphLegend::Part& part) {
+std::string partRangeText(const GlyphLegend::Part& part) {
     const double resolution = std::abs(part.range.hi - part.range.lo) / 30;
     return formatNumber(part.range.lo, resolution) + " to " + formatQuantity(part.range.hi, part.unit, resolution);
 }
@@ -89,7 +89,7 @@ void drawGlyphPicture(ImDrawList& draw, ImVec2 middle, float size, vis::GlyphKin
     for (const glm::uvec3& triangle : shape.triangles) {
         Face face{0, {}, shape.parts[triangle.z]};
         for (int i = 0; i < 3; ++i) {
-            face.at[static_cast<std::size_t>(i)] = seen(shape.positions[triangle[i]], flat);
+            face.at[static_cast<std::size_t>(i)] = legendView(shape.positions[triangle[i]], flat);
             face.depth += face.at[static_cast<std::size_t>(i)].z;
         }
         faces.push_back(face);
@@ -114,16 +114,16 @@ void drawGlyphPicture(ImDrawList& draw, ImVec2 middle, float size, vis::GlyphKin
 }
 
 float glyphLegendHeight(const GlyphLegend& legend) {
-    const float lines = kLine * static_cast<float>(legend.parts.size());
-    return em() * (kLine + std::max(lines, kPicture) + 0.3f);
+    const float lines = kPartLine * static_cast<float>(legend.parts.size());
+    return em() * (kPartLine + std::max(lines, kGlyphPicture) + 0.3f);
 }
 
 float drawGlyphLegend(ImDrawList& draw, ImVec2 min, float width, const std::string& title, const GlyphLegend& legend) {
     const PlotColors colors = plotColors();
     addFittedText(draw, min, colors.text, title, width);
-    const float height = glyphLegendHeight(legend), picture = std::min(em() * kPicture, width * 0.4f);
-    const float top = min.y + em() * kLine;
-    drawGlyphPicture(draw, {min.x + picture / 2, top + (height - em() * (kLine + 0.3f)) / 2}, picture, legend.kind,
+    const float height = glyphLegendHeight(legend), picture = std::min(em() * kGlyphPicture, width * 0.4f);
+    const float top = min.y + em() * kPartLine;
+    drawGlyphPicture(draw, {min.x + picture / 2, top + (height - em() * (kPartLine + 0.3f)) / 2}, picture, legend.kind,
                      sharesOf(legend));
     const float left = min.x + picture + em() * 0.4f, right = min.x + width;
     float y = top;
@@ -135,16 +135,16 @@ float drawGlyphLegend(ImDrawList& draw, ImVec2 min, float width, const std::stri
         }
         const std::string name = part.color ? part.channel : part.part + ": " + part.channel;
         const double resolution = std::abs(part.range.hi - part.range.lo) / 300;
-        std::string least = name + "  " + rangeText(part), whole = least;
+        std::string least = name + "  " + partRangeText(part), whole = least;
         if (legend.atCursor) {
             least = name + "  " + (part.value ? formatQuantity(*part.value, part.unit, resolution) : "absent");
-            whole = least + " (" + rangeText(part) + ")";
+            whole = least + " (" + partRangeText(part) + ")";
         }
         const std::string fitted = firstThatFits({whole, least}, right - x);
         const std::string shown = fitted.empty() ? fitText(least, right - x) : fitted;
         draw.AddText({x, y}, colors.text, shown.c_str());
         tellWhole({x, y}, {right, y + em()}, whole, shown);
-        y += em() * kLine;
+        y += em() * kPartLine;
     }
     return height;
 }

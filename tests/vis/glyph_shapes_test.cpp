@@ -36,7 +36,7 @@ std::vector<glm::dvec3> verticesOf(const GlyphShape& shape, int ownPart) {
         if (shape.parts[i] == ownPart + int(kCommonGlyphParts)) out.push_back(shape.positions[i]);
     return out;
 }
-double farthest(const std::vector<glm::dvec3>& points) {
+double outermost(const std::vector<glm::dvec3>& points) {
     double most = 0;
     for (const glm::dvec3& point : points) most = std::max(most, glm::length(point));
     return most;
@@ -60,7 +60,7 @@ TEST(GlyphShapesTest, EveryShapeIsWholeAndStaysInItsBall) {
                     values[i] = kind == GlyphKind::Ellipsoid && value > 0 ? value / 3 : value; // a tensor of length 1
                 const GlyphShape shape = shapeOf(kind, values, sides);
                 EXPECT_FALSE(shape.triangles.empty()) << int(kind) << " " << value;
-                EXPECT_LE(farthest(shape.positions), 0.5 + 1e-12) << int(kind) << " " << value;
+                EXPECT_LE(outermost(shape.positions), 0.5 + 1e-12) << int(kind) << " " << value;
                 ASSERT_EQ(shape.positions.size(), shape.normals.size());
                 ASSERT_EQ(shape.positions.size(), shape.parts.size());
                 for (const glm::uvec3& t : shape.triangles)

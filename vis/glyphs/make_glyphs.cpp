@@ -23,7 +23,7 @@ int sidesFor(std::size_t glyphs) {
 
 /// Axes of a glyph as drawn, as columns: flat kinds lie across z with y upwards, others stand along z.
 glm::dmat3 frameOf(bool flat, glm::dvec3 normal, glm::dvec3 direction) {
-    const glm::dvec3 upright = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 upright = std::abs(normal.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
     glm::dvec3 z = normal, up = upright;
     if (glm::dot(direction, direction) > 0) {
         if (flat)

@@ -195,7 +195,7 @@ GlyphSamples sampleGlyphs(const volume::BrickSource& source, const GlyphLayer& l
     }
     const int across = thinnestAxis(alone ? edges : glm::abs(space.to - space.from) * moment.stretch);
     out.facing = glm::dvec3(0);
-    out.facing[across] = across == 1 ? -1 : 1; // the way in which x is at the right and what is higher is above
+    out.facing[across] = across == 0 ? -1 : 1; // so that x or z is at the right and y above
     out.stands = placeGlyphs(
         space, [&](std::span<const GlyphStand> stands) { return weightsOf(source, layer, moment, stands, progress); });
     const std::vector<glm::dvec3> places = inSpace(out.stands, info);

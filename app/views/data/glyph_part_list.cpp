@@ -12,23 +12,23 @@ namespace tessera::app {
 
 namespace {
 
-constexpr float kPicture = 7; // em
+constexpr float kPartPicture = 7; // em
 
 /// The glyph with every part at its most, those that nothing moves too where none is moved.
-void drawPicture(const vis::GlyphLayer& layer) {
+void drawGlyphAtMost(const vis::GlyphLayer& layer) {
     std::vector<double> shares(vis::glyphPartNames(layer.kind).size(), vis::kPartAtRest);
     for (std::size_t i = vis::kCommonGlyphParts; i < shares.size() && layer.kind != vis::GlyphKind::Ellipsoid; ++i)
         if (std::ranges::find(layer.parts, vis::glyphPartNames(layer.kind)[i], &vis::GlyphPart::part) !=
             layer.parts.end())
             shares[i] = 1;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float size = em() * kPicture, room = ImGui::GetContentRegionAvail().x;
+    const float size = em() * kPartPicture, room = ImGui::GetContentRegionAvail().x;
     drawGlyphPicture(*ImGui::GetWindowDrawList(), {at.x + room / 2, at.y + size / 2}, size * 0.95f, layer.kind, shares);
     ImGui::Dummy({room, size});
 }
 
 /// Values of the least and the most of a part; those of the parameter until they are changed.
-void drawRange(const WidgetContext& widgets, vis::GlyphPart& part) {
+void drawPartRange(const WidgetContext& widgets, vis::GlyphPart& part) {
     const auto range = vis::glyphPartRange(part, *widgets.info);
     if (!range) return;
     const volume::Channel channel = widgets.info->channel(*widgets.info->findChannel(part.channel));
@@ -40,7 +40,7 @@ void drawRange(const WidgetContext& widgets, vis::GlyphPart& part) {
 }
 
 /// The parameter of a part, and that which is dropped on it.
-void drawPart(const WidgetContext& widgets, vis::GlyphLayer& layer, std::size_t index) {
+void drawGlyphPart(const WidgetContext& widgets, vis::GlyphLayer& layer, std::size_t index) {
     const std::string name(vis::glyphPartNames(layer.kind)[index]);
     drawLabel(widgets.at(""), labelOf(name),
               index == vis::kColorPart ? "Parameter whose transfer function colours the glyph"
@@ -65,7 +65,7 @@ void drawPart(const WidgetContext& widgets, vis::GlyphLayer& layer, std::size_t 
     }
     if (changed) setGlyphPart(layer, name, channel);
     const auto now = std::ranges::find(layer.parts, name, &vis::GlyphPart::part);
-    if (now != layer.parts.end() && index != vis::kColorPart) drawRange(widgets, *now);
+    if (now != layer.parts.end() && index != vis::kColorPart) drawPartRange(widgets, *now);
 }
 
 } // namespace
@@ -85,10 +85,10 @@ void setGlyphPart(vis::GlyphLayer& layer, std::string_view part, const std::stri
 bool drawGlyphParts(const WidgetContext& widgets, vis::GlyphLayer& layer) {
     if (!widgets.info) return true;
     if (!beginSection("parts", "Parts of the glyph", "Parameters that move the parts of the glyph")) return true;
-    drawPicture(layer);
+    drawGlyphAtMost(layer);
     const std::size_t count = vis::glyphPartNames(layer.kind).size();
-    for (std::size_t i = vis::kCommonGlyphParts; i < count; ++i) drawPart(widgets, layer, i);
-    for (std::size_t i = 0; i < vis::kCommonGlyphParts; ++i) drawPart(widgets, layer, i);
+    for (std::size_t i = vis::kCommonGlyphParts; i < count; ++i) drawGlyphPart(widgets, layer, i);
+    for (std::size_t i = 0; i < vis::kCommonGlyphParts; ++i) drawGlyphPart(widgets, layer, i);
     endSection();
     return true;
 }
