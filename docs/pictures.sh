@@ -18,6 +18,10 @@ mkdir -p "$out"
     --set '/title="Marschner-Lobb signal"' --set '/stretch=[1,1,1]' --set /time=0 --set /camera/distance=3.4 \
     --set /views/volume/cursor=false --set '/selection/brushes=[]' \
     --set '/layers=[{"name":"surface","technique":{"type":"iso","channel":"rho","value":0.5,"color":[0.85,0.6,0.3]}}]'
+"$tessera" render parallel -o "$out/parallel.png" --view parallelCoordinates --size 900x560
+"$tessera" render worlds -o "$out/worlds.png" --view hierarchy --size 900x560
+"$tessera" render glyphs -o "$out/glyphs.png" --view volume --size 900x560
+"$tessera" render hyperslice -o "$out/hyperslice.png" --view hyperSlice --size 900x560
 for drawing in cells:grid scale:even; do
     "$tessera" render membrane -o "$out/layers-${drawing%:*}.png" --view slices --size 900x560 \
         --set '/views/slices/channel="region"' --set "/data/lattice=\"${drawing#*:}\""

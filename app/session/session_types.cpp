@@ -10,6 +10,7 @@ template const ValueType& valueType<DataFile>();
 template const ValueType& valueType<DataRef>();
 template const ValueType& valueType<DataView>();
 template const ValueType& valueType<DockNode>();
+template const ValueType& valueType<HierarchyView>();
 template const ValueType& valueType<HistogramView>();
 template const ValueType& valueType<HistoryView>();
 template const ValueType& valueType<HyperSliceView>();

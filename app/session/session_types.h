@@ -14,6 +14,7 @@ extern template const ValueType& valueType<DataFile>();
 extern template const ValueType& valueType<DataRef>();
 extern template const ValueType& valueType<DataView>();
 extern template const ValueType& valueType<DockNode>();
+extern template const ValueType& valueType<HierarchyView>();
 extern template const ValueType& valueType<HistogramView>();
 extern template const ValueType& valueType<HistoryView>();
 extern template const ValueType& valueType<HyperSliceView>();

@@ -98,6 +98,11 @@ constexpr Consumer kConsumers[] = {
     {"oblique",         "F F F F . . . . . . . . . . . F . . . . F"},
     {"shadowCube",      "F F F F F F F F F F F F F . F . . . . . F"},
     {"tesseract",       "F F . . . F F . . . . . . . F . . . . . F"},
+    {"parallelCoordinates", "F F . . . F . . . . . F . . . F . . . . F"},
+    {"scatter3d",       "F F . . . F . . . . . F . . . . . . . . F"},
+    {"hyperSlice",      "F F F . . . . . . . . . . . . . . . . . F"},
+    {"hierarchy",       "F F . . . F . . . . . . . . . . . . . . F"},
+    {"worthSeeing",     "F . . . . . . . . . . . . . . F . . . . F"},
     {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
 };
 // clang-format on
@@ -124,6 +129,8 @@ protected:
         if (auto* compare = std::get_if<CompareView>(&view)) compare->showTable = false; // of times
         if (auto* curves = std::get_if<CurvesView>(&view)) curves->y = {"mean(T)"}, curves->brushed = true;
         install(view);
+        if (std::holds_alternative<HierarchyView>(view))
+            start.selection.brushes = {vis::rangeBrush({{.channel = "T", .lo = 312, .hi = 1e9}}, "warm")};
         if (std::holds_alternative<ProbesView>(view)) start.probes = {{"one", {0.0121, 0.0042, -0.0004}, 0.5}};
     }
 

@@ -84,6 +84,14 @@ const std::vector<Shipped>& shipped() {
          "data layers slices timeline transfer volume",
          "O2 [mol/m³] = 2.5; H2 [mol/m³] = 26.5; T [K] 353.17 .. 356.60",
          {{"volume", Orange, 0.0708}, {"volume", Cold, 0.0263}}},
+        {"glyphs",
+         "data layers slices timeline transfer volume",
+         "",
+         {{"volume", Cold, 0.02}, {"volume", Orange, 0.005}}},
+        {"hyperslice",
+         "data hyperSlice layers timeline transfer volume",
+         "H2 [mol/m³] 24.48 .. 33.11",
+         {{"hyperSlice", Cold, 0.103}, {"hyperSlice", Green, 0.0515}}},
         {"illustration",
          "data layers timeline transfer volume",
          "O2 [mol/m³] = 2.5; T [K] 353.17 .. 356.60",
@@ -103,6 +111,10 @@ const std::vector<Shipped>& shipped() {
          "data history layers log scatterMatrix slices timeline transfer volume",
          kTemperature,
          {{"volume", Warm, 0.0875}, {"slices", Warm, 0.0396}, {"scatterMatrix", Orange, 0}}},
+        {"parallel",
+         "data history layers log parallelCoordinates slices timeline transfer volume",
+         kTemperature,
+         {{"parallelCoordinates", Orange, 0.0136}}},
         {"shadowCube",
          "data layers shadowCube slices timeline transfer",
          kTemperature,
@@ -124,6 +136,11 @@ const std::vector<Shipped>& shipped() {
           {"tesseract", Cold, 0.0945},
           {"tesseract", Warm, 0.0615},
           {"volume", Green, 0.149}}},
+        {"worlds",
+         "data hierarchy history layers log statistics timeline transfer volume",
+         kTemperature,
+         {{"volume", Warm, 0.05}, {"hierarchy", Orange, 0.02}, {"hierarchy", Cold, 0.05}}},
+        {"worth_seeing", "data layers slices timeline transfer volume whatElse when worthSeeing", kTemperature, {}},
     };
     return layouts;
 }
@@ -226,6 +243,10 @@ TEST_P(Layouts, AreDrawnWithoutOpenGl) {
     std::vector<std::string> panes = {"volume", "tesseract", "shadowCube"};
     if (name == "overview") panes.insert(panes.end(), {"slices", "scatterMatrix"});
     if (name == "compareTechniques") panes.push_back("compare");
+    if (name == "hyperslice") panes.push_back("hyperSlice");
+    if (name == "parallel") panes.push_back("parallelCoordinates");
+    if (name == "worlds") panes.push_back("hierarchy");
+    if (name == "worth_seeing") panes.push_back("worthSeeing");
     PictureMaker without({.openGl = false});
     for (const std::string& pane : panes) {
         if (!session().views.contains(pane)) continue;

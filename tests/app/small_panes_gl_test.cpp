@@ -75,6 +75,9 @@ TEST_F(SmallPanes, EachViewShowsWhatItIsAbout) {
     profileView.over = ProfileOver::Sections;
     expectMain(profileView, drawProfileView, 0.6f, 0.3f);
     expectMain(sliceMatrixView, drawSliceMatrixView, 0.4f, 0.3f);
+    HyperSliceView hyperSlice;
+    expectMain(hyperSlice, drawHyperSliceView, 0.8f, 0.6f);
+    EXPECT_THAT(drawIn({80, 60}, hyperSlice, drawHyperSliceView), HasSubstr("Not enough room"));
     expectMain(shadowCubeView, drawShadowCubeView, 0.8f, 0.6f);
     expectMain(tesseractView, drawTesseractView, 0.7f, 0.5f);
 }

@@ -34,7 +34,7 @@ const PictureForm kPageForms[] = {
     paperForm("oneColumn", 14, PictureGround::Shown), paperForm("oneColumn", 8, PictureGround::White)};
 
 /// Kinds whose pages are drawn as their panes are, with lenses, brushes and true proportions (drawn_page_gl_test.cpp).
-const std::set<std::string_view> kDrawn{"slices", "oblique", "sliceMatrix", "scatterMatrix"};
+const std::set<std::string_view> kDrawn{"slices", "oblique", "sliceMatrix", "scatterMatrix", "hyperSlice"};
 
 template <class Shape> std::vector<Shape> shapesOn(const VectorPage& page) {
     std::vector<Shape> out;

@@ -245,6 +245,14 @@ inline constexpr std::tuple kViewKinds{
          .csv = true,
          .leastWidth = 240,
          .leastHeight = 200}},
+    ViewKind<HierarchyView, drawHierarchyView>{
+        {.title = "Hierarchy",
+         .help = "The brushes as a chain: what each leaves of the ones before it, as plots, as areas and over time",
+         .words = "worlds within worlds tree mosaic brushes levels drill condition filter share",
+         .figure = true,
+         .csv = true,
+         .leastWidth = 260,
+         .leastHeight = 200}},
     ViewKind<WorthSeeingView, drawWorthSeeingView>{
         {.title = "Worth seeing",
          .help = "What stands out in the data: dependences, changes, outliers; a click opens the view that shows it",

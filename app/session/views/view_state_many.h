@@ -92,6 +92,31 @@ struct HyperSliceView {
 };
 DrawView<HyperSliceView> drawHyperSliceView;
 
+/// The brushes as a chain: each splits what the ones before it select, down to a plot of what is left (S. Feiner and
+/// C. Beshers, Worlds within worlds, 1990).
+struct HierarchyView {
+    static constexpr std::string_view kType = "hierarchy";
+    std::vector<std::string> next; ///< one or two parameters of the last plot; empty: the first that no brush names
+    int bins = 96;
+    bool logDensity = true;
+    float softness = 0; ///< soft edge of new brushes, as a share of their width
+    bool overTime = true;
+    bool operator==(const HierarchyView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.next, FieldInfo{.key = "next",
+                                   .doc = "One or two parameters of the last plot, in which the next brush is drawn; "
+                                          "empty: the first that no brush names",
+                                   .refersTo = "channel"});
+        visit(self.bins, FieldInfo{.key = "bins", .doc = "Bins along each axis of a plot", .range = Range{16, 512}});
+        visit(self.logDensity, FieldInfo{"logDensity", "Logarithmic density"});
+        visit(self.softness, FieldInfo{.key = "softness",
+                                       .doc = "Soft edge of new brushes, as a share of their width",
+                                       .range = Range{0, 1}});
+        visit(self.overTime, FieldInfo{"overTime", "Show the volume of every level over all times"});
+    }
+};
+DrawView<HierarchyView> drawHierarchyView;
+
 /// What the list of things worth seeing answers.
 enum class WorthList { Views, WhatElse, When };
 inline constexpr std::string_view kWorthListNames[] = {"views", "whatElse", "when"};

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "app/queries/async_query.h"
+#include "app/queries/statistics_query.h"
+#include "volume/analysis/axis_densities.h"
+
+#include <glm/vec3.hpp>
+#include <imgui.h>
+#include <memory>
+#include <string>
+#include <vector>
+
+/// What parallel coordinates are drawn from, counted in the background, the coarsest level first.
+namespace tessera::app {
+
+struct ParallelQuery {
+    std::vector<volume::DensityAxis> axes;
+    int bins = 128;
+    bool together = false; ///< of three axes: every triple of bins, too
+    int groups = 0;        ///< colours of the selection: brushGroups(); 0: nothing is selected
+    BrushedQuery brushed;  ///< its channels begin with those of the axes; the group of each brush is its colour's red
+    bool operator==(const ParallelQuery&) const = default;
+};
+
+/// The colours that selected samples have: several where brushes are alternatives ("or"), each sample that of the brush
+/// that holds it most, the first that of samples held by none; else one.
+struct BrushGroups {
+    std::vector<ImU32> colors;
+    std::vector<int> ofBrush; ///< by enabled brush
+};
+BrushGroups brushGroups(const Session& session);
+
+ParallelQuery parallelQuery(const Session& session, const volume::DatasetInfo& info,
+                            const std::vector<volume::DensityAxis>& axes, int bins);
+
+struct ParallelResult {
+    ParallelQuery query;
+    volume::AxisDensities densities;
+    bool brushed() const { return query.groups > 0; }
+    /// Samples with a value on any axis.
+    double samples() const;
+};
+
+/// Counts at a level of detail. Channels a brush names but the data lack count as absent. Throws Error, Cancelled.
+ParallelResult readDensities(const std::shared_ptr<const volume::BrickSource>& source, const ParallelQuery& query,
+                             int level, const Progress& progress = {});
+
+/// One per view, in its cache.
+class AsyncDensities {
+public:
+    /// The best answer so far: of this very query, else the last one of the same axes while it is being computed, else
+    /// null. Sets context.answers.awaiting while better ones are on their way; headless, computes to the end.
+    std::shared_ptr<const ParallelResult> get(ViewContext& context, const std::string& jobKey,
+                                              const ParallelQuery& query);
+    std::string failure() const { return query_.failure(); }
+
+private:
+    AsyncQuery<ParallelQuery, ParallelResult> query_{{.answers = 16}};
+    std::shared_ptr<const volume::BrickSource> source_;
+    std::shared_ptr<const volume::BrickSource> coarse_; ///< its coarse bricks, kept while a brush is dragged
+};
+
+} // namespace tessera::app

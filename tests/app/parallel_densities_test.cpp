@@ -1,0 +1,183 @@
+#include "app/views/parallel/parallel_query.h"
+#include "tests/app/fed_imgui.h"
+#include "tests/app/formula_cell.h"
+#include "volume/sources/memory_source.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <map>
+
+/// What parallel coordinates are drawn from, counted again sample by sample.
+namespace tessera::app {
+namespace {
+
+using formula::Place;
+
+struct Counted {
+    std::map<std::pair<int, int>, double> all, selected;
+};
+
+std::shared_ptr<const volume::BrickSource> cell() {
+    return volume::makeMemorySource(formula::makeCell(), {});
+}
+
+/// Where a sample lies on an axis, from its definition.
+int placeOn(const volume::DensityAxis& axis, const std::string& name, Place at, int time, int bins) {
+    const auto value = formula::value(name, at, time);
+    if (!value) return volume::absentPlace(bins);
+    double v = double(*value), lo = axis.range.lo, hi = axis.range.hi;
+    if (axis.logarithmic) {
+        if (v <= 0) return volume::belowPlace(bins);
+        v = std::log10(v), lo = std::log10(lo), hi = std::log10(hi);
+    }
+    if (v < lo) return volume::belowPlace(bins);
+    if (v > hi) return volume::abovePlace(bins);
+    return std::min(bins - 1, int(std::floor((v - lo) / (hi - lo) * bins)));
+}
+
+class Densities : public FedImGui { // colours of brushes follow the theme
+protected:
+    Densities() : FedImGui({640, 480}) {}
+    int channel(const char* name) const { return *source->info().findChannel(name); }
+    volume::DensityAxis axis(const char* name, bool logarithmic = false) const {
+        return {channel(name), formula::rangeOf(name), logarithmic};
+    }
+    /// Compares every number of every gap and axis; `degree`: of a sample, `group`: its class.
+    void expectCounted(const volume::AxisDensitiesQuery& query, const std::vector<std::string>& names,
+                       const std::function<double(Place)>& degree, const std::function<int(Place)>& group) {
+        const volume::AxisDensities found = volume::axisDensities(*source, query);
+        ASSERT_EQ(found.gaps.size() + 1, names.size());
+        const auto places = int(volume::placesOf(query.bins));
+        for (std::size_t g = 0; g < names.size(); ++g) {
+            const bool single = g + 1 == names.size();
+            std::vector<std::map<std::pair<int, int>, double>> sums(std::size_t(query.groups) + 1);
+            std::vector<std::map<int, double>> alone(std::size_t(query.groups) + 1);
+            formula::forEachPlace([&](Place at) {
+                bool there = false;
+                for (const std::string& name : names) there = there || formula::value(name, at, query.time);
+                if (!there) return;
+                const int a = placeOn(query.axes[g], names[g], at, query.time, query.bins);
+                const int b = single ? 0 : placeOn(query.axes[g + 1], names[g + 1], at, query.time, query.bins);
+                sums[0][{a, b}] += 1, alone[0][a] += 1;
+                if (query.groups == 0) return;
+                sums[std::size_t(group(at)) + 1][{a, b}] += degree(at);
+                alone[std::size_t(group(at)) + 1][a] += degree(at);
+            });
+            for (int a = 0; a < places; ++a) {
+                EXPECT_EQ(double(found.axes[g].all[std::size_t(a)]), alone[0][a]) << names[g] << " place " << a;
+                for (int k = 0; k < query.groups; ++k)
+                    EXPECT_NEAR(found.axes[g].selected[std::size_t(k)][std::size_t(a)], alone[std::size_t(k) + 1][a],
+                                1e-3 * alone[0][a]);
+                for (int b = 0; b < places && !single; ++b) {
+                    const auto at = std::size_t(a * places + b);
+                    EXPECT_EQ(double(found.gaps[g].all[at]), (sums[0][{a, b}])) << names[g] << " " << a << " " << b;
+                    for (int k = 0; k < query.groups; ++k)
+                        EXPECT_NEAR(found.gaps[g].selected[std::size_t(k)][at], (sums[std::size_t(k) + 1][{a, b}]),
+                                    (1e-3 * sums[0][{a, b}]));
+                }
+            }
+        }
+    }
+    std::shared_ptr<const volume::BrickSource> source = cell();
+};
+
+TEST_F(Densities, AreThoseOfTheSamples) {
+    volume::AxisDensitiesQuery query{.axes = {axis("T"), axis("c"), axis("|U|"), axis("region")}, .further = {}};
+    query.bins = 17;
+    for (query.time = 0; query.time < 3; ++query.time) {
+        SCOPED_TRACE(query.time);
+        expectCounted(query, {"T", "c", "|U|", "region"}, {}, {});
+    }
+}
+
+TEST_F(Densities, SamplesBeyondTheEndsOfAnAxisHavePlacesOfTheirOwn) {
+    volume::AxisDensitiesQuery query{.axes = {axis("T"), axis("U.y", true), axis("c", true)}, .further = {}};
+    query.axes[0].range = {310, 331};
+    query.axes[1].range = {1e-3, 1e-1}; // all values are 0 or below
+    query.axes[2].range = {2.05, 3.1};
+    query.bins = 9;
+    expectCounted(query, {"T", "U.y", "c"}, {}, {});
+    const volume::AxisDensities found = volume::axisDensities(*source, query);
+    EXPECT_EQ(found.axes[1].all[std::size_t(volume::belowPlace(9))], std::uint64_t(8 * 7 * 9));
+}
+
+TEST_F(Densities, SelectedSamplesAreCountedByGroup) {
+    volume::AxisDensitiesQuery query{.axes = {axis("T"), axis("c")}, .further = {channel("U.x")}};
+    query.bins = 12;
+    query.groups = 2;
+    query.interest = [](std::span<const float> values, glm::dvec3 position) {
+        EXPECT_EQ(values.size(), 3u);
+        return volume::DensityInterest{values[2] > 0.6f ? 1 : 0, position.y > 0.005 ? 0.75 : 0};
+    };
+    expectCounted(
+        query, {"T", "c"}, [](Place at) { return at.y * 2e-3 > 0.005 ? 0.75 : 0; },
+        [](Place at) { return *formula::value("U.x", at, 0) > 0.6f ? 1 : 0; });
+}
+
+TEST_F(Densities, WhatLacksEveryParameterTakesNoPart) {
+    volume::AxisDensitiesQuery query{.axes = {axis("c")}, .further = {}};
+    query.bins = 5;
+    const volume::AxisDensities found = volume::axisDensities(*source, query);
+    EXPECT_EQ(found.axes[0].all[std::size_t(volume::absentPlace(5))], 0u);
+}
+
+vis::Brush rangeOfT(double lo, double hi, glm::vec3 color, vis::BrushCombine combine) {
+    vis::Brush brush = vis::rangeBrush({{.channel = "T", .lo = lo, .hi = hi}}, "b");
+    brush.color = color;
+    brush.combine = combine;
+    return brush;
+}
+
+TEST_F(Densities, AlternativesHaveTheirOwnColours) {
+    Session session;
+    const glm::vec3 red(1, 0, 0), blue(0, 0, 1);
+    session.selection.brushes = {rangeOfT(300, 315, red, vis::BrushCombine::And),
+                                 rangeOfT(310, 325, blue, vis::BrushCombine::And)};
+    EXPECT_EQ(brushGroups(session).colors.size(), 1u) << "both must hold: one selection";
+    session.selection.brushes[1].combine = vis::BrushCombine::Or;
+    ASSERT_EQ(brushGroups(session).colors.size(), 3u);
+    const ParallelQuery query = parallelQuery(session, source->info(), {axis("T"), axis("c")}, 20);
+    ASSERT_EQ(query.groups, 3);
+    const ParallelResult result = readDensities(source, query, 0);
+    double first = 0, second = 0;
+    formula::forEachPlace([&](Place at) {
+        const float t = *formula::value("T", at, 0);
+        if (t >= 300 && t <= 315)
+            ++first; // held by both: the first
+        else if (t >= 310 && t <= 325)
+            ++second;
+    });
+    const volume::PlaceCounts& counts = result.densities.axes[0];
+    std::vector<double> sums(3);
+    for (std::size_t g = 0; g < 3; ++g)
+        for (const double each : counts.selected[g]) sums[g] += each;
+    EXPECT_EQ(sums, (std::vector<double>{0, first, second}));
+    EXPECT_EQ(result.samples(), 8 * 7 * 9);
+}
+
+TEST_F(Densities, BrushesOfParametersWithoutAnAxisSelectToo) {
+    Session session;
+    session.selection.brushes = {rangeOfT(300, 312, {1, 0, 0}, vis::BrushCombine::And)};
+    const ParallelQuery query = parallelQuery(session, source->info(), {axis("c"), axis("|U|")}, 20);
+    const ParallelResult result = readDensities(source, query, 0);
+    double expected = 0;
+    formula::forEachPlace([&](Place at) { expected += *formula::value("T", at, 0) <= 312 ? 1 : 0; });
+    double sum = 0;
+    for (std::size_t i = 0; i < volume::placesOf(20); ++i) sum += result.densities.axes[0].selectedAt(i);
+    EXPECT_EQ(sum, expected);
+}
+
+TEST(AxisShare, AndValueAreInverse) {
+    for (const bool logarithmic : {false, true}) {
+        const volume::DensityAxis axis{0, {2, 500}, logarithmic};
+        EXPECT_DOUBLE_EQ(volume::axisShare(axis, 2), 0);
+        EXPECT_DOUBLE_EQ(volume::axisShare(axis, 500), 1);
+        for (const double share : {0.1, 0.5, 0.93})
+            EXPECT_NEAR(volume::axisShare(axis, volume::axisValue(axis, share)), share, 1e-12);
+        EXPECT_NEAR(volume::axisValue(axis, 0.5), logarithmic ? std::sqrt(1000.0) : 251, 1e-9);
+    }
+    EXPECT_LT(volume::axisShare({0, {1, 2}, true}, -3), -1e300);
+}
+
+} // namespace
+} // namespace tessera::app
