@@ -81,6 +81,35 @@ struct RakeShares {
     }
 };
 
+/// Handles of places on a plane across an axis, between two corners in space.
+void handlePlane(HandledObject& object, glm::dvec3 from, glm::dvec3 to, glm::dvec3 middle, int across,
+                 const RakeShares& shares, std::size_t index) {
+    const int u = (across + 1) % 3, v = (across + 2) % 3;
+    object.handles = {{.at = middle, .whole = true}};
+    std::vector<glm::dvec3> corners;
+    for (const int corner : {0, 1, 3, 2}) { // around
+        glm::dvec3 at = middle;
+        at[u] = corner & 1 ? to[u] : from[u];
+        at[v] = corner & 2 ? to[v] : from[v];
+        object.handles.push_back({.at = at});
+        corners.push_back(at);
+    }
+    for (std::size_t i = 0; i < 4; ++i) object.lines.emplace_back(corners[i], corners[(i + 1) % 4]);
+    object.move = [index, shares, across, u, v](Session& edited, std::size_t handle, glm::dvec3 place) {
+        shares.edit(rakeOf(edited.layers[index].technique), [&](Rake own) {
+            const glm::vec3 at = shares.of(place);
+            if (handle == 0) { // a plane has no thickness once it is moved
+                own.from[across] = own.to[across] = at[across];
+                return moveRake(own, at);
+            }
+            static constexpr int kCorner[] = {0, 1, 3, 2};
+            const int corner = kCorner[handle - 1];
+            (corner & 1 ? own.to : own.from)[u] = at[u];
+            (corner & 2 ? own.to : own.from)[v] = at[v];
+        });
+    };
+}
+
 void addRake(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info,
              std::size_t index) {
     const vis::Layer& layer = session.layers[index];
@@ -122,31 +151,8 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
         };
     } else if (*shape == volume::SeedShape::Plane) {
         const glm::dvec3 edges = glm::abs((axes.toSheet(to) - axes.toSheet(from)) * session.stretch);
-        const int across = glyphs ? vis::thinnestAxis(edges) : thinnest(edges), u = (across + 1) % 3,
-                  v = (across + 2) % 3;
-        object.handles = {{.at = middle, .whole = true}};
-        std::vector<glm::dvec3> corners;
-        for (const int corner : {0, 1, 3, 2}) { // around
-            glm::dvec3 at = middle;
-            at[u] = corner & 1 ? to[u] : from[u];
-            at[v] = corner & 2 ? to[v] : from[v];
-            object.handles.push_back({.at = at});
-            corners.push_back(at);
-        }
-        for (std::size_t i = 0; i < 4; ++i) object.lines.emplace_back(corners[i], corners[(i + 1) % 4]);
-        object.move = [index, shares, across, u, v](Session& edited, std::size_t handle, glm::dvec3 place) {
-            shares.edit(rakeOf(edited.layers[index].technique), [&](Rake own) {
-                const glm::vec3 at = shares.of(place);
-                if (handle == 0) { // a plane has no thickness once it is moved
-                    own.from[across] = own.to[across] = at[across];
-                    return moveRake(own, at);
-                }
-                static constexpr int kCorner[] = {0, 1, 3, 2};
-                const int corner = kCorner[handle - 1];
-                (corner & 1 ? own.to : own.from)[u] = at[u];
-                (corner & 2 ? own.to : own.from)[v] = at[v];
-            });
-        };
+        const int across = glyphs ? vis::thinnestAxis(edges) : thinnest(edges);
+        handlePlane(object, from, to, middle, across, shares, index);
     } else {
         const bool everything = rake.from == glm::vec3(0) && rake.to == glm::vec3(1);
         object.handles = {{.at = from}, {.at = to}};

@@ -1,3 +1,5 @@
+#include "vis/glyphs/glyph_shapes.h"
+
 #include "vis/glyphs/glyph_parts.h"
 #include "vis/glyphs/shape_parts.h"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/glyphs/glyph_mesh.h"
 #include "vis/scene/glyph_layer.h"
 
 #include <cstdint>
@@ -20,14 +21,6 @@ inline constexpr double kLeastPart = 0.15;
 inline double partLength(double value) {
     return kLeastPart + (1 - kLeastPart) * value;
 }
-
-/// A mesh in the ball of diameter 1 around 0. Flat kinds lie across z, y upwards; others stand along z.
-struct GlyphShape {
-    std::vector<glm::dvec3> positions, normals; ///< normals not normalised; 0: flat, those of the triangles
-    std::vector<std::int8_t> parts; ///< index in glyphPartNames(), -1: none. A triangle is of that of its last vertex
-    std::vector<glm::uvec3> triangles;
-    void clear();
-};
 
 /// Sets `shape` to a glyph. `values`: one for each of glyphPartNames(), in 0..1, of tensors in -1..1; NaN where absent:
 /// the part is left out, or the whole shape where isWholeGlyph(). Size, colour, opacity and tilt are left to the

@@ -1,10 +1,13 @@
 #pragma once
 
-#include "vis/glyphs/glyph_shapes.h"
+#include "vis/glyphs/glyph_mesh.h"
 
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <initializer_list>
 #include <numbers>
 
 /// Pieces that glyphs are made of; `part`: the index of what they show, -1: none.

@@ -73,7 +73,7 @@ void drawMoreOf(ViewContext& context, ToolRow& tools, ParallelCoordinatesView& v
     if (!ImGui::BeginPopup("more")) return;
     ImGui::Checkbox("Histograms on the axes", &view.histograms);
     ImGui::SetNextItemWidth(em() * 8);
-    ImGui::SliderInt("bins##bins", &view.bins, 16, 512);
+    slider("bins##bins", view.bins, 16, 512, "%d");
     if (ImGui::IsItemActive()) context.interacting = true;
     ImGui::SetNextItemWidth(em() * 8);
     float percent = view.softness * 100;
