@@ -141,7 +141,10 @@ FormedLegends formLegends(const std::vector<LegendEntry>& entries, const LegendR
         out.width = out.names.width();
         height = entries.empty() ? 0 : LegendNames::height();
     } else {
-        out.width = place.form == LegendForm::Lines ? out.lines.width() : std::min(em() * 15, wide * 0.45f);
+        const bool glyphs =
+            std::ranges::any_of(entries, [](const LegendEntry& entry) { return entry.glyph.has_value(); });
+        const float whole = em() * (glyphs ? 20 : 15); // names, ranges and units beside a picture
+        out.width = place.form == LegendForm::Lines ? out.lines.width() : std::min(whole, wide * 0.45f);
         if (out.width < em() * 7) return out;
         for (const LegendEntry& entry : entries) {
             if (height + out.heightOf(entry) > high * place.most) break;

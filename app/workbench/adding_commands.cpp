@@ -62,12 +62,13 @@ struct SceneChanges {
 /// A layer of each kind.
 void addLayers(SceneChanges& list) {
     Workbench& workbench = list.workbench;
-    static constexpr std::array<std::tuple<const char*, const char*, const char*>, 4> kLayers{
+    static constexpr std::array<std::tuple<const char*, const char*, const char*>, 5> kLayers{
         {{"Add volume layer", "Draw a parameter as a volume", "new fog rays rendering"},
          {"Add iso-surface layer", "Draw the surface where a parameter has one value", "new isosurface contour"},
          {"Add slice layer", "Draw a parameter on a plane in space", "new cut section oblique"},
-         {"Add flow layer", "Draw streamlines of a vector",
-          "new streamlines stream lines pathlines arrows glyphs vectors"}}};
+         {"Add flow layer", "Draw streamlines of a vector", "new streamlines stream lines pathlines arrows vectors"},
+         {"Add glyph layer", "Draw figures whose parts show many parameters at once",
+          "new glyphs icons stars bars pies jumping jacks superquadrics tensors ellipsoids"}}};
     for (std::size_t kind = 0; kind < kLayers.size(); ++kind) {
         const auto& [name, help, words] = kLayers[kind];
         list.add(

@@ -129,7 +129,7 @@ void drawLayerButtons(ViewContext& context, const volume::DatasetInfo& info, int
     const bool room = layers.size() < kMostLayers;
     if (iconButton(context, "add", icons::kPlus, "Add a layer", room)) ImGui::OpenPopup("add layer");
     if (ImGui::BeginPopup("add layer")) {
-        static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow"};
+        static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow", "Glyphs"};
         for (std::size_t kind = 0; kind < std::size(kNames); ++kind)
             if (ImGui::MenuItem(kNames[kind], nullptr, false, kind != 3 || !firstVector(info).empty())) {
                 addLayer(context.session, *context.source, kind);
