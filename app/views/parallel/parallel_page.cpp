@@ -54,9 +54,9 @@ class ParallelMarks {
 public:
     /// `upright`: length of titles that read upwards; 0: they stand in one line or two.
     ParallelMarks(const ParallelState& state, const ParallelPlot& plot, const ParallelPageLook& look,
-                  const PageForm& form, double upright, std::vector<Mark>& out)
+                  const PageForm& form, double upright, VectorPage& page)
         : state_(state), plot_(plot), look_(look), form_(form), inks_(pageInks(form)), text_(form.text),
-          scale_(form.text / kFigureText), upright_(upright), out_(out) {}
+          scale_(form.text / kFigureText), upright_(upright), width_(page.size.x), out_(page.marks) {}
 
     /// `top`: of the part of the page that is its own.
     void draw(std::size_t index, double top) {
@@ -190,7 +190,8 @@ private:
                                   .angle = -90}});
             return;
         }
-        const double room = (plot_.axes.size() > 1 ? double(plot_.gap()) : 30 * text_) - 4 * scale_;
+        const double gap = plot_.axes.size() > 1 ? double(plot_.gap()) : 30 * text_;
+        const double room = std::min(gap, 2 * std::min(x, width_ - x)) - 4 * scale_; // ends on the page
         if (pageTextWidth(shown.whole(), text_) <= room) return words({x, top}, shown.whole(), 0.5);
         words({x, top - 1.1 * text_}, fittedWords(shown.name, room), 0.5);
         words({x, top}, shown.rest, 0.5);
@@ -228,7 +229,7 @@ private:
     const ParallelPageLook& look_;
     const PageForm& form_;
     PageInks inks_;
-    double text_, scale_, upright_;
+    double text_, scale_, upright_, width_;
     std::vector<Mark>& out_;
 };
 
@@ -287,7 +288,7 @@ VectorPage parallelPage(const std::vector<ParallelState>& states, const Parallel
         const double gap = axes > 1 ? double(plot.gap()) : page.size.x;
         if (gap < kLeastGap * scale || height < 4 * text)
             throw Error("the texts leave no room for " + std::to_string(axes) + " axes on a page of this size");
-        ParallelMarks(states[s], plot, look, form, upright, page.marks).draw(s, each * double(s));
+        ParallelMarks(states[s], plot, look, form, upright, page).draw(s, each * double(s));
     }
     return page;
 }
