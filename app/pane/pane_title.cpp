@@ -26,6 +26,9 @@ std::string layersText(const std::vector<vis::Layer>& layers) {
 }
 
 std::string ownText(const Session& session, const std::string& pane, const volume::DatasetInfo& info) {
+    if (const auto found = session.views.find(pane); found != session.views.end())
+        if (const auto* worth = std::get_if<WorthSeeingView>(&found->second))
+            return worth->list == WorthList::WhatElse ? "What else" : worth->list == WorthList::When ? "When" : "";
     const VolumeView* view = volumeView(session, pane);
     if (!view) return {};
     std::string text = view->layers ? layersText(*view->layers) : std::string();
