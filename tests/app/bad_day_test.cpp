@@ -37,7 +37,7 @@ void expectOneLineNaming(const std::string& session, const std::vector<Nonsense>
         EXPECT_NE(message.find(bad.path), std::string::npos) << message;
         EXPECT_NE(message.find("bad.tessera.json"), std::string::npos) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos) << "one line";
-        EXPECT_LT(message.size(), 300u);
+        EXPECT_LT(message.size(), 400u);
     }
 }
 

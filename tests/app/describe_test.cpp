@@ -214,7 +214,7 @@ TEST(DescribeJson, UnknownVariantTypeNamesTheKnownOnes) {
     fromJson(layer, document, issues);
     ASSERT_EQ(issues.size(), 1u);
     EXPECT_EQ(issues[0].path, "/technique/type");
-    EXPECT_EQ(issues[0].reason, "unknown type \"hologram\"; known are volume, iso, slice, flow");
+    EXPECT_EQ(issues[0].reason, "unknown type \"hologram\"; known are volume, iso, slice, flow, glyphs");
 }
 
 TEST(DescribeJson, BrokenTextSaysWhere) {

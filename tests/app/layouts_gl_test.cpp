@@ -140,7 +140,7 @@ const std::vector<Shipped>& shipped() {
          "data hierarchy history layers log statistics timeline transfer volume",
          kTemperature,
          {{"volume", Warm, 0.05}, {"hierarchy", Orange, 0.02}, {"hierarchy", Cold, 0.05}}},
-        {"worth_seeing", "data layers slices timeline transfer volume whatElse when worthSeeing", kTemperature, {}},
+        {"worthSeeing", "data layers slices timeline transfer volume whatElse when worthSeeing", kTemperature, {}},
     };
     return layouts;
 }
@@ -246,7 +246,7 @@ TEST_P(Layouts, AreDrawnWithoutOpenGl) {
     if (name == "hyperslice") panes.push_back("hyperSlice");
     if (name == "parallel") panes.push_back("parallelCoordinates");
     if (name == "worlds") panes.push_back("hierarchy");
-    if (name == "worth_seeing") panes.push_back("worthSeeing");
+    if (name == "worthSeeing") panes.push_back("worthSeeing");
     PictureMaker without({.openGl = false});
     for (const std::string& pane : panes) {
         if (!session().views.contains(pane)) continue;

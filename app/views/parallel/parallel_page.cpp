@@ -17,14 +17,14 @@ namespace {
 
 constexpr glm::dvec2 kNaturalGap{92, 190}; ///< between two axes, points
 constexpr double kPixelsPerPoint = 3;      ///< of the pictures between axes
-constexpr double kThinLine = 0.7, kWideLine = 1.4, kLeastGap = 5;
+constexpr double kThinLine = 0.7, kWideLine = 1.4, kLeastGap = 9;
 constexpr float kOnWhiteGround = 0.7f; ///< of colours of brushes, which are bright
 
 glm::vec4 inked(glm::vec3 color, float alpha = 1) {
     return {color, alpha};
 }
 
-constexpr double kTitleRows = 2.4; ///< of a title in two lines, sizes of text
+constexpr double kLongestUpright = 9; ///< of a title that reads upwards, sizes of text
 
 /// The title of an axis in two parts: its name, and what its numbers mean nothing without.
 struct PageTitle {
@@ -52,10 +52,11 @@ bool titlesAreWide(const ParallelPlot& plot, const PageForm& form) {
 /// One state on a page; its axes have their places.
 class ParallelMarks {
 public:
+    /// `upright`: length of titles that read upwards; 0: they stand in one line or two.
     ParallelMarks(const ParallelState& state, const ParallelPlot& plot, const ParallelPageLook& look,
-                  const PageForm& form, std::vector<Mark>& out)
+                  const PageForm& form, double upright, std::vector<Mark>& out)
         : state_(state), plot_(plot), look_(look), form_(form), inks_(pageInks(form)), text_(form.text),
-          scale_(form.text / kFigureText), out_(out) {}
+          scale_(form.text / kFigureText), upright_(upright), out_(out) {}
 
     /// `top`: of the part of the page that is its own.
     void draw(std::size_t index, double top) {
@@ -164,7 +165,7 @@ private:
             for (std::size_t t = 0; t < ticks.values.size(); ++t) {
                 const double y = double(own.pixel(ticks.values[t]));
                 line({x - tick, y}, {x, y}, inks_.frame, kThinLine);
-                const double room = i == 0 ? 8 * text_ : double(plot_.gap()) * 0.45;
+                const double room = i == 0 ? x - tick - 2 * scale_ : double(plot_.gap()) * 0.45;
                 if (pageTextWidth(ticks.texts[t], text_) <= room)
                     words({x - tick - 2 * scale_, y + text_ * kMiddle}, ticks.texts[t], 1, i > 0);
             }
@@ -174,25 +175,39 @@ private:
         line({x, double(plot_.markTop)}, {x, double(plot_.markBottom)}, inks_.frame, kThinLine);
         out_.push_back({Circle{
             .center = {x, double(plot_.markAt())}, .radius = 2 * scale_, .color = inks_.frame, .line = kThinLine}});
-        if (i == 0 && form_.axes) words({x - 5 * scale_, double(plot_.markAt()) + text_ * kMiddle}, "absent", 1);
+        if (i == 0 && form_.axes && pageTextWidth("absent", text_) <= x - 5 * scale_)
+            words({x - 5 * scale_, double(plot_.markAt()) + text_ * kMiddle}, "absent", 1);
     }
-    /// In one line or two, those of every other axis above the others where they are wide.
     void title(std::size_t i, const std::string& note) {
         const ParallelAxis& own = plot_.axes[i];
         const PageTitle shown = pageTitle(own, note, form_);
-        const double gap = plot_.axes.size() > 1 ? double(plot_.gap()) : 30 * text_;
-        const bool wide = titlesAreWide(plot_, form_);
-        const double room = (wide ? 2 : 1) * gap - 4 * scale_;
-        const double top = double(own.top) - (0.6 + (wide && i % 2 == 1 ? kTitleRows : 0)) * text_;
-        if (pageTextWidth(shown.whole(), text_) <= room) return words({double(own.x), top}, shown.whole(), 0.5);
-        std::string name = shown.name, cut = name;
+        const double x = double(own.x), top = double(own.top) - 0.6 * text_;
+        if (upright_ > 0) {
+            out_.push_back({Words{.text = fittedTitle(shown, upright_),
+                                  .at = {x + text_ * kMiddle, top},
+                                  .size = text_,
+                                  .color = inks_.text,
+                                  .angle = -90}});
+            return;
+        }
+        const double room = (plot_.axes.size() > 1 ? double(plot_.gap()) : 30 * text_) - 4 * scale_;
+        if (pageTextWidth(shown.whole(), text_) <= room) return words({x, top}, shown.whole(), 0.5);
+        words({x, top - 1.1 * text_}, fittedWords(shown.name, room), 0.5);
+        words({x, top}, shown.rest, 0.5);
+    }
+    std::string fittedTitle(const PageTitle& title, double room) const {
+        const double rest = title.rest.empty() ? 0 : pageTextWidth(" " + title.rest, text_);
+        const std::string name = fittedWords(title.name, room - rest);
+        return title.rest.empty() ? name : name + " " + title.rest;
+    }
+    std::string fittedWords(std::string name, double room) const {
+        std::string cut = name;
         while (!name.empty() && pageTextWidth(cut, text_) > room) {
             while (name.size() > 1 && (name.back() & 0xc0) == 0x80) name.pop_back(); // a whole letter of UTF-8
             name.pop_back();
             cut = name + "...";
         }
-        words({double(own.x), top - 1.1 * text_}, cut, 0.5);
-        words({double(own.x), top}, shown.rest, 0.5);
+        return cut;
     }
     void cursor(const std::vector<std::optional<double>>& values) {
         for (std::size_t i = 0; i < plot_.axes.size() && i < values.size(); ++i) {
@@ -213,12 +228,13 @@ private:
     const ParallelPageLook& look_;
     const PageForm& form_;
     PageInks inks_;
-    double text_, scale_;
+    double text_, scale_, upright_;
     std::vector<Mark>& out_;
 };
 
 /// Room behind the last axis: for its histogram and half its title.
-double lastRoom(const ParallelAxis& axis, bool histograms, const PageForm& form) {
+double lastRoom(const ParallelAxis& axis, bool histograms, bool upright, const PageForm& form) {
+    if (upright) return 1.5 * form.text;
     const PageTitle title = pageTitle(axis, axisTicks(axis, form.text * 1.1).note, form);
     const double half = std::max(pageTextWidth(title.name, form.text), pageTextWidth(title.rest, form.text)) / 2;
     return std::max(std::min(half, 5 * form.text), (histograms ? 3.8 : 1.0) * form.text) + 0.3 * form.text;
@@ -248,21 +264,30 @@ VectorPage parallelPage(const std::vector<ParallelState>& states, const Parallel
         ParallelPlot plot{.axes = states[s].axes};
         const double bottom = each * double(s + 1);
         const bool marks = lacksAny(states[s].result->densities);
+        double upright = 0;
         const auto placed = [&](double above) {
             const double top = each * double(s) + named + above;
             for (ParallelAxis& axis : plot.axes) axis.top = 0, axis.bottom = float(std::max(1.0, bottom - top));
-            const double numbers = form.axes ? widestNumber(plot.axes.front(), text) + 9 * scale : 6 * scale;
-            const double right = lastRoom(plot.axes.back(), look.histograms, form);
-            placeAxes(plot, {0, float(top)}, {float(page.size.x), float(bottom)}, marks,
-                      float(std::max(numbers, 2.5 * text)), float(right), float(text * 1.1));
+            double numbers = std::max(form.axes ? widestNumber(plot.axes.front(), text) + 9 * scale : 0, 2.5 * text);
+            if (upright > 0) numbers = std::min(numbers, 0.3 * page.size.x);
+            const double right = lastRoom(plot.axes.back(), look.histograms, upright > 0, form);
+            placeAxes(plot, {0, float(top)}, {float(page.size.x), float(bottom)}, marks, float(numbers), float(right),
+                      float(text * 1.1));
             return bottom - top;
         };
         double height = placed(3.2 * text);
-        if (titlesAreWide(plot, form)) height = placed((3.2 + kTitleRows) * text);
+        if (form.axes && titlesAreWide(plot, form)) {
+            double longest = 0;
+            for (const ParallelAxis& axis : plot.axes)
+                longest = std::max(
+                    longest, pageTextWidth(pageTitle(axis, axisTicks(axis, text * 1.1).note, form).whole(), text));
+            upright = std::min({longest, kLongestUpright * text, 0.4 * each});
+            height = placed(upright + 1.2 * text);
+        }
         const double gap = axes > 1 ? double(plot.gap()) : page.size.x;
         if (gap < kLeastGap * scale || height < 4 * text)
             throw Error("the texts leave no room for " + std::to_string(axes) + " axes on a page of this size");
-        ParallelMarks(states[s], plot, look, form, page.marks).draw(s, each * double(s));
+        ParallelMarks(states[s], plot, look, form, upright, page.marks).draw(s, each * double(s));
     }
     return page;
 }
