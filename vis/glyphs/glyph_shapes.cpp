@@ -57,34 +57,35 @@ void makeSixSided(std::span<const double> own, GlyphShape& shape) {
     addFace(shape, {corner(5), corner(4), corner(3), corner(2), corner(1), corner(0)}, -1);
 }
 
-void makeStar(std::span<const double> values, bool fine, GlyphShape& shape) {
+void makeStar(std::span<const double> values, RodDetail detail, GlyphShape& shape) {
     const std::vector<std::size_t> moved = movedParts(values);
-    addHub(shape, {0, 0, 0.02}, {0.055, 0.055, 0.045}, -1);
+    addHub(shape, {0, 0, 0.02}, {0.055, 0.055, 0.045}, detail, -1);
     for (std::size_t i = 0; i < moved.size(); ++i) {
         const double value = values[moved[i]], angle = pi / 2 - 2 * pi * double(i) / double(moved.size());
         const glm::dvec3 way{std::cos(angle), std::sin(angle), 0};
         if (!std::isnan(value))
-            addRod(shape, way * 0.02, way * (0.5 * partLength(value)), fine ? 0.03 : 0.045, fine, int(moved[i]));
+            addRod(shape, way * 0.02, way * (0.5 * partLength(value)), detail == RodDetail::Whole ? 0.03 : 0.045,
+                   detail, int(moved[i]));
     }
 }
 
-void makeBars(std::span<const double> values, bool fine, GlyphShape& shape) {
+void makeBars(std::span<const double> values, RodDetail detail, GlyphShape& shape) {
     constexpr double kHalf = 0.36, kFoot = -0.32, kHeight = 0.65, kDepth = 0.05;
     const std::vector<std::size_t> moved = movedParts(values);
-    addBox(shape, {-kHalf, kFoot - 0.02}, {kHalf, kFoot}, kDepth, fine, -1);
+    addBox(shape, {-kHalf, kFoot - 0.02}, {kHalf, kFoot}, kDepth, detail, -1);
     const double step = 2 * kHalf / double(std::max<std::size_t>(moved.size(), 1));
     for (std::size_t i = 0; i < moved.size(); ++i) {
         const double value = values[moved[i]], left = -kHalf + step * double(i);
         if (!std::isnan(value))
             addBox(shape, {left + 0.1 * step, kFoot}, {left + 0.9 * step, kFoot + kHeight * partLength(value)}, kDepth,
-                   fine, int(moved[i]));
+                   detail, int(moved[i]));
     }
 }
 
 void makePie(std::span<const double> values, int sides, GlyphShape& shape) {
     constexpr double kGap = 0.02; // angle between slices
     const std::vector<std::size_t> moved = movedParts(values);
-    if (moved.empty()) addHub(shape, glm::dvec3(0), glm::dvec3(0.055), -1);
+    if (moved.empty()) addHub(shape, glm::dvec3(0), glm::dvec3(0.055), RodDetail::Whole, -1);
     const auto count = double(moved.size());
     for (std::size_t i = 0; i < moved.size(); ++i) {
         if (std::isnan(values[moved[i]])) continue;
@@ -102,7 +103,7 @@ void makePie(std::span<const double> values, int sides, GlyphShape& shape) {
     }
 }
 
-void makeJack(std::span<const double> own, bool fine, GlyphShape& shape) {
+void makeJack(std::span<const double> own, RodDetail detail, GlyphShape& shape) {
     constexpr double kWidth = 0.03, kArm = 0.28, kLeg = 0.33;
     const int first = int(kCommonGlyphParts);
     const double body = orRest(own[5], 0.2), head = orRest(own[4], 0.5);
@@ -114,12 +115,12 @@ void makeJack(std::span<const double> own, bool fine, GlyphShape& shape) {
         const double lifted = (-70 + 140 * arm) * pi / 180, spread = (3 + 65 * leg) * pi / 180;
         const glm::dvec3 toHand{sign * std::cos(lifted), std::sin(lifted), 0},
             toFoot{sign * std::sin(spread), -std::cos(spread), 0};
-        if (!std::isnan(arm)) addRod(shape, shoulder, shoulder + toHand * kArm, kWidth, fine, first + side);
-        if (!std::isnan(leg)) addRod(shape, hip, hip + toFoot * kLeg, kWidth, fine, first + 2 + side);
+        if (!std::isnan(arm)) addRod(shape, shoulder, shoulder + toHand * kArm, kWidth, detail, first + side);
+        if (!std::isnan(leg)) addRod(shape, hip, hip + toFoot * kLeg, kWidth, detail, first + 2 + side);
     }
-    if (!std::isnan(body)) addBox(shape, {-half, -0.1}, {half, 0.16}, 0.04, fine, first + 5);
+    if (!std::isnan(body)) addBox(shape, {-half, -0.1}, {half, 0.16}, 0.04, detail, first + 5);
     const double radius = 0.04 + 0.07 * head;
-    if (!std::isnan(head)) addHub(shape, {0, 0.17 + radius, 0.02}, {radius, radius, radius * 0.6}, first + 4);
+    if (!std::isnan(head)) addHub(shape, {0, 0.17 + radius, 0.02}, {radius, radius, radius * 0.6}, detail, first + 4);
 }
 
 double signedPower(double base, double exponent) {
@@ -190,7 +191,7 @@ void makeGlyphShape(GlyphKind kind, std::span<const double> values, int sides, G
     shape.clear();
     for (std::size_t i = 0; i < values.size(); ++i)
         if (std::isnan(values[i]) && isWholeGlyph(kind, i)) return;
-    const bool fine = sides >= 8;
+    const RodDetail detail = sides >= 8 ? RodDetail::Whole : sides >= 6 ? RodDetail::Few : RodDetail::Open;
     const auto own = values.subspan(kCommonGlyphParts);
     switch (kind) {
     case GlyphKind::Arrow:
@@ -200,13 +201,13 @@ void makeGlyphShape(GlyphKind kind, std::span<const double> values, int sides, G
     case GlyphKind::SixSided:
         return makeSixSided(own, shape);
     case GlyphKind::Star:
-        return makeStar(values, fine, shape);
+        return makeStar(values, detail, shape);
     case GlyphKind::Bars:
-        return makeBars(values, fine, shape);
+        return makeBars(values, detail, shape);
     case GlyphKind::Pie:
         return makePie(values, sides, shape);
     case GlyphKind::JumpingJack:
-        return makeJack(own, fine, shape);
+        return makeJack(own, detail, shape);
     case GlyphKind::Superquadric:
         return makeSuperquadric(own, sides, shape);
     case GlyphKind::Ellipsoid:

@@ -24,7 +24,8 @@ inline double partLength(double value) {
 
 /// Sets `shape` to a glyph. `values`: one for each of glyphPartNames(), in 0..1, of tensors in -1..1; NaN where absent:
 /// the part is left out, or the whole shape where isWholeGlyph(). Size, colour, opacity and tilt are left to the
-/// caller. `sides`: of what is round, at least 3; figures of rods have fewer triangles below 8.
+/// caller. `sides`: of what is round, at least 3; figures of rods have fewer triangles below 8, and no back
+/// below 6.
 ///
 /// - arrow, cone: length and width are partLength(value) of the most; at rest the most.
 /// - six-sided cone: side i, counter-clockwise seen from the tip, is filled from its base up to partLength(value) of

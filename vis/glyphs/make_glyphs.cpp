@@ -18,7 +18,7 @@ constexpr double kLeastOpacity = 0.1;
 
 /// Sides of what is round: fewer where many glyphs are small.
 int sidesFor(std::size_t glyphs) {
-    return glyphs <= 500 ? 20 : glyphs <= 3000 ? 12 : 6;
+    return glyphs <= 500 ? 20 : glyphs <= 3000 ? 12 : glyphs <= 10000 ? 6 : 5;
 }
 
 /// Axes of a glyph as drawn, as columns: flat kinds lie across z with y upwards, others stand along z.

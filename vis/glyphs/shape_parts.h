@@ -47,8 +47,15 @@ inline void addCone(GlyphShape& shape, double from, double to, double radiusFrom
     }
 }
 
-/// A rod with a ridge towards z that ends in a point exactly at `to`: few triangles; `fine`: as thick up to its end.
-inline void addRod(GlyphShape& shape, glm::dvec3 from, glm::dvec3 to, double width, bool fine, int part) {
+/// How many triangles figures of rods and boxes have.
+enum class RodDetail {
+    Open,  ///< without their back, which is seen through from behind
+    Few,   ///< rods become thinner, boxes are their front
+    Whole, ///< as thick up to their end, with all sides
+};
+
+/// A rod with a ridge towards z that ends in a point exactly at `to`.
+inline void addRod(GlyphShape& shape, glm::dvec3 from, glm::dvec3 to, double width, RodDetail detail, int part) {
     const glm::dvec3 way = to - from;
     const double length = glm::length(way);
     if (!(length > 0)) return;
@@ -57,7 +64,7 @@ inline void addRod(GlyphShape& shape, glm::dvec3 from, glm::dvec3 to, double wid
     const glm::dvec3 corners[] = {beside, -beside, up};
     for (const glm::dvec3& corner : corners) addVertex(shape, from + corner, glm::dvec3(0), part);
     std::uint32_t last = first;
-    if (fine && length > width) {
+    if (detail == RodDetail::Whole && length > width) {
         last = first + 3;
         for (const glm::dvec3& corner : corners)
             addVertex(shape, from + way * (1 - width / length) + corner, glm::dvec3(0), part);
@@ -68,22 +75,23 @@ inline void addRod(GlyphShape& shape, glm::dvec3 from, glm::dvec3 to, double wid
         }
     }
     const std::uint32_t tip = addVertex(shape, to, glm::dvec3(0), part);
-    for (std::uint32_t i = 0; i < 3; ++i) shape.triangles.push_back({last + i, last + (i + 1) % 3, tip});
+    for (std::uint32_t i = detail == RodDetail::Open; i < 3; ++i)
+        shape.triangles.push_back({last + i, last + (i + 1) % 3, tip});
 }
 
-/// A box that rests on a plane across z; `fine`: else its front alone.
-inline void addBox(GlyphShape& shape, glm::dvec2 lo, glm::dvec2 hi, double depth, bool fine, int part) {
+/// A box that rests on a plane across z.
+inline void addBox(GlyphShape& shape, glm::dvec2 lo, glm::dvec2 hi, double depth, RodDetail detail, int part) {
     const auto at = [&](int i) { return glm::dvec3(i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? depth : 0); };
     addFace(shape, {at(4), at(5), at(7), at(6)}, part);
-    if (!fine) return;
+    if (detail != RodDetail::Whole) return;
     addFace(shape, {at(2), at(6), at(7), at(3)}, part);
     addFace(shape, {at(0), at(1), at(5), at(4)}, part);
     addFace(shape, {at(1), at(3), at(7), at(5)}, part);
     addFace(shape, {at(0), at(4), at(6), at(2)}, part);
 }
 
-/// An octahedron.
-inline void addHub(GlyphShape& shape, glm::dvec3 centre, glm::dvec3 radius, int part) {
+/// An octahedron, or its half towards z.
+inline void addHub(GlyphShape& shape, glm::dvec3 centre, glm::dvec3 radius, RodDetail detail, int part) {
     const auto first = std::uint32_t(shape.positions.size());
     for (int axis = 0; axis < 3; ++axis)
         for (const double side : {1.0, -1.0}) {
@@ -91,7 +99,7 @@ inline void addHub(GlyphShape& shape, glm::dvec3 centre, glm::dvec3 radius, int 
             at[axis] += side * radius[axis];
             addVertex(shape, at, glm::dvec3(0), part);
         }
-    for (std::uint32_t i = 0; i < 8; ++i) {
+    for (std::uint32_t i = 0; i < (detail == RodDetail::Open ? 4u : 8u); ++i) {
         const std::uint32_t x = first + (i & 1), y = first + 2 + (i >> 1 & 1), z = first + 4 + (i >> 2);
         shape.triangles.push_back({x, y, z});
     }
