@@ -47,6 +47,15 @@ int branchesLevel(const volume::BrickGrid& grid, std::size_t times) {
     return grid.levelWithin(std::max(kFewest, kSamples / double(std::max<std::size_t>(1, times))));
 }
 
+/// Whether the answer to one can stand for the other meanwhile: while a brush is dragged, but not where brushes change
+/// places, whose names would stand at the numbers of others.
+bool sameButOne(const BranchesQuery& shown, const BranchesQuery& wanted) {
+    const std::vector<vis::Brush>&a = shown.selection.brushes, &b = wanted.selection.brushes;
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) others += a[i] == b[i] ? 0 : 1;
+    return a.size() == b.size() && others < 2;
+}
+
 } // namespace
 
 BranchesQuery branchesQuery(const Session& session, const volume::DatasetInfo& info) {
@@ -149,9 +158,7 @@ std::shared_ptr<const Branches> branchesNow(ViewContext& context, AsyncBranches&
         [](const auto& source, const BranchesQuery& asked, int level, const Progress& progress) {
             return readBranches(source, asked, level, progress);
         },
-        [](const BranchesQuery& shown, const BranchesQuery& wanted) {
-            return shown.selection.brushes.size() == wanted.selection.brushes.size();
-        });
+        sameButOne);
 }
 
 std::shared_ptr<const std::vector<Branches>> branchesOverTime(ViewContext& context, AsyncBranches& answers,
@@ -170,9 +177,7 @@ std::shared_ptr<const std::vector<Branches>> branchesOverTime(ViewContext& conte
         [](const auto& source, const BranchesQuery& asked, int level, const Progress& progress) {
             return readBranchesOverTime(source, asked, level, progress);
         },
-        [](const BranchesQuery& shown, const BranchesQuery& wanted) {
-            return shown.selection.brushes.size() == wanted.selection.brushes.size();
-        });
+        sameButOne);
 }
 
 } // namespace tessera::app

@@ -91,7 +91,7 @@ private:
 
     /// Visits every member whose description says that it names a parameter.
     template <class Technique> void fit(vis::Layer& layer, Technique& technique) {
-        bool replaced = false;
+        bool replaced = false, standsNowhere = false; // the latter: of glyphs on a surface of an unknown parameter
         Technique::describe(technique, [&]<class Member>(Member& member, const FieldInfo& field) {
             if constexpr (std::is_same_v<Member, std::string>) {
                 if (field.refersTo == "channel") {
@@ -105,6 +105,11 @@ private:
                 } else if (field.refersTo == "optionalVector") {
                     if (!isVector(member)) member.clear();
                 } else if (field.refersTo == "optionalChannel") {
+                    if (field.key == "surface" && !member.empty() && !known(member)) {
+                        messages_.push_back("layer " + layerName(layer) + " stands on a plane: " + member +
+                                            " is not in the data");
+                        standsNowhere = true;
+                    }
                     if (!known(member)) member.clear();
                 } else if (field.refersTo == "colorChannel" && !member.empty() && !known(member)) {
                     messages_.push_back("layer " + layerName(layer) + " keeps its own colours: " + member +
@@ -116,7 +121,7 @@ private:
             }
         });
         if constexpr (requires { technique.surfaceValue; })
-            if (technique.place == vis::GlyphPlace::Surface && technique.surface.empty()) technique.place = {};
+            if (technique.place == vis::GlyphPlace::Surface && standsNowhere) technique.place = {};
         if constexpr (requires { technique.value; })
             if (const auto index = info_.findChannel(technique.channel); replaced && index) {
                 const Range range = info_.channelRange(channels_[static_cast<std::size_t>(*index)]);

@@ -171,7 +171,7 @@ TEST(Branches, TheTableHasARowForEachBranchWithItsShares) {
     EXPECT_EQ(column("volume").numbers[row], own.volume);
     EXPECT_NEAR(column("share of the level above").numbers[row], own.volume / branches.of({Outcome::Inside}).volume,
                 1e-12);
-    EXPECT_NEAR(column("share of all").numbers[row], own.volume / branches.of({}).volume, 1e-12);
+    EXPECT_NEAR(column("share of the box").numbers[row], own.volume / branches.of({}).volume, 1e-12);
     double leaves = 0;
     for (std::size_t i = 0; i < rowsOf(table); ++i)
         if (column("level").numbers[i] == 2 || column("branch").texts[i].ends_with("without a value for warm"))

@@ -68,13 +68,15 @@ TEST_F(HierarchyHands, ADragInTheLastPlotAddsALevelAndTheNextOneFollows) {
         EXPECT_NEAR(own.samples / read.of({}).samples, expected, 1e-12);
         return volume::Tally{own.samples, own.volume / read.of({}).volume};
     }();
-    EXPECT_THAT(drawn(), HasSubstr(formatShare(now.volume) + " of all"));
+    EXPECT_THAT(drawn(), HasSubstr(formatShare(now.volume) + " of the box"));
     EXPECT_THAT(drawn(), HasSubstr(formatCount(now.samples) + " samples"));
 }
 
 TEST_F(HierarchyHands, ALevelIsEditedInItsPlaceAndKeepsItsName) {
     vis::Brush rich = vis::rangeBrush({{.channel = "c", .lo = -1e9, .hi = 1e9}}, "rich");
-    open({warm(), rich});
+    vis::Brush cold = warm();
+    cold.inverted = true;
+    open({cold, rich});
     const vis::Brush second = brushes()[1];
     const ImRect plot = plotOf(0);
     drag({plot.Min.x + 4, plot.GetCenter().y}, {plot.Min.x + plot.GetWidth() * 0.3f, plot.GetCenter().y});
@@ -82,6 +84,17 @@ TEST_F(HierarchyHands, ALevelIsEditedInItsPlaceAndKeepsItsName) {
     ASSERT_EQ(brushes().size(), 2u);
     EXPECT_EQ(brushes()[0].name, "warm");
     EXPECT_LT(std::get<vis::RangeRegion>(brushes()[0].region).intervals[0].hi, 1e6) << "drawn anew";
+    EXPECT_TRUE(brushes()[0].inverted && brushes()[0].enabled);
+    EXPECT_EQ(brushes()[1], second);
+    shift = true; // which adds a brush in other plots
+    drag({plot.Min.x + plot.GetWidth() * 0.6f, plot.GetCenter().y},
+         {plot.Min.x + plot.GetWidth() * 0.9f, plot.GetCenter().y});
+    shift = false;
+    settle();
+    ASSERT_EQ(brushes().size(), 2u) << "a level has one brush";
+    EXPECT_EQ(brushes()[0].name, "warm");
+    const auto& drawn = std::get<vis::RangeRegion>(brushes()[0].region).intervals[0];
+    EXPECT_GT(drawn.hi - drawn.lo, 5) << "it follows the mouse";
     EXPECT_EQ(brushes()[1], second);
 }
 

@@ -9,13 +9,13 @@ namespace {
 class ParallelHands : public Hands {
 protected:
     void showAxes(const std::function<void(ParallelCoordinatesView&)>& change = {},
-                  const std::function<void(Session&)>& prepare = {}) {
+                  const std::function<void(Session&)>& prepare = {}, glm::ivec2 size = {560, 420}) {
         ParallelCoordinatesView parallel;
         parallel.channels = {"T", "c", "|U|"};
         parallel.bins = 16;
         parallel.softness = 0;
         if (change) change(parallel);
-        show(parallel, {560, 420}, prepare);
+        show(parallel, size, prepare);
         ASSERT_EQ(plot().axes.size(), parallel.channels.size());
     }
     const ParallelPlot& plot(std::size_t index = 0) {
@@ -172,6 +172,25 @@ TEST_F(ParallelHands, ADragBetweenAxesSelectsTheLinesThere) {
     EXPECT_LE(selectedSamples(), perhaps + 1);
     EXPECT_LT(perhaps, 200) << "not everything";
     EXPECT_EQ(steps(), 1u);
+}
+
+TEST_F(ParallelHands, AStrokeThatRisesFurtherThanTheAxesKeepsWhatWasSelected) {
+    showAxes([](ParallelCoordinatesView& view) { view.channels = {"T", "|U|"}; }, {}, {900, 260});
+    const ParallelAxis left = plot().axes[0], right = plot().axes[1];
+    const float gap = right.x - left.x, height = left.bottom - left.top;
+    ASSERT_GT(gap, 2 * height);
+    const ImVec2 from{std::floor(left.x + gap / 2), std::floor(left.bottom - height * 0.2f)};
+    moveTo(from);
+    button(0, true);
+    moveTo({from.x + 60, from.y - 4});
+    ASSERT_EQ(session().selection.brushes.size(), 1u);
+    const vis::Selection flat = session().selection;
+    EXPECT_GT(std::get<vis::LassoRegion>(flat.brushes[0].region).points.size(), 2u);
+    moveTo({from.x + 60, from.y - 58}); // no line between these axes rises like this
+    EXPECT_TRUE(session().selection == flat);
+    button(0, false);
+    settle();
+    EXPECT_TRUE(session().selection == flat);
 }
 
 TEST_F(ParallelHands, ATitleIsDraggedToAnotherPlace) {

@@ -1,4 +1,6 @@
+#include "app/views/parallel/parallel_page.h"
 #include "app/views/parallel/parallel_query.h"
+#include "app/views/scatter3d/cloud_table.h"
 #include "tests/app/fed_imgui.h"
 #include "tests/app/formula_cell.h"
 #include "volume/sources/memory_source.h"
@@ -6,6 +8,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
+#include <tuple>
 
 /// What parallel coordinates are drawn from, counted again sample by sample.
 namespace tessera::app {
@@ -165,6 +168,57 @@ TEST_F(Densities, BrushesOfParametersWithoutAnAxisSelectToo) {
     double sum = 0;
     for (std::size_t i = 0; i < volume::placesOf(20); ++i) sum += result.densities.axes[0].selectedAt(i);
     EXPECT_EQ(sum, expected);
+}
+
+TEST_F(Densities, TablesSayWhenTheyAreEstimated) {
+    Session session;
+    ParallelQuery query = parallelQuery(session, source->info(), {axis("T"), axis("|U|"), axis("c")}, 6);
+    query.together = true;
+    const std::vector<ParallelAxis> axes =
+        parallelAxes(source->info(), {}, {channel("T"), channel("|U|"), channel("c")});
+    const std::string note = "estimated from a coarser level";
+    for (const int level : {0, 1}) {
+        const auto result = std::make_shared<ParallelResult>(readDensities(source, query, 0));
+        const auto exact = std::make_shared<ParallelResult>(*result);
+        result->densities.level = level;
+        const std::vector<ParallelState> states{{"a", 0, exact, axes}, {"b", 1, result, axes}};
+        const auto notes = [&](const Table& table) { return std::ranges::count(table.notes, note); };
+        EXPECT_EQ(notes(parallelTable(states, source->info(), "")), level) << "one of two times";
+        EXPECT_EQ(notes(cloudTable(*result, axes, "")), level);
+    }
+}
+
+TEST_F(Densities, AnswersKnowTheirSize) {
+    Session session;
+    session.selection.brushes = {rangeOfT(300, 315, {1, 0, 0}, vis::BrushCombine::And),
+                                 rangeOfT(310, 325, {0, 0, 1}, vis::BrushCombine::Or)};
+    ParallelQuery query = parallelQuery(session, source->info(), {axis("T"), axis("|U|"), axis("c")}, 6);
+    query.together = true;
+    ASSERT_EQ(query.groups, 3);
+    // 9 places on each axis, 81 in each gap, 216 triples of bins; all samples and three colours, 8 bytes each.
+    EXPECT_EQ(readDensities(source, query, 0).bytes(), std::size_t(3 * 9 + 2 * 81 + 216) * 4 * 8);
+    EXPECT_EQ(ParallelResult{}.bytes(), 0u);
+}
+
+TEST(KeptOrder, IsFoundAgainForAnotherAnswerOrOtherChannels) {
+    const auto answer = [](double ab, double bc, double ac) {
+        auto out = std::make_shared<StatisticsResult>();
+        for (const auto& [x, y, r] : {std::tuple{0, 1, ab}, {1, 2, bc}, {0, 2, ac}}) {
+            volume::JointHistogram& joint = out->statistics.joint.emplace_back();
+            joint.x = x, joint.y = y, joint.correlation = r;
+        }
+        return out;
+    };
+    KeptOrder order;
+    const auto first = answer(0.1, -0.8, 0.9);
+    EXPECT_EQ(order.of(first, {4, 6, 9}), (std::vector<int>{4, 9, 6}));
+    for (volume::JointHistogram& joint : first->statistics.joint) joint.correlation = joint.y == 1 ? 1 : 0.5;
+    EXPECT_EQ(order.of(first, {4, 6, 9}), (std::vector<int>{4, 9, 6})) << "kept: it is not looked for in each frame";
+    EXPECT_EQ(order.of(answer(0.9, 0.8, 0.1), {4, 6, 9}), (std::vector<int>{4, 6, 9}));
+    EXPECT_EQ(order.of(answer(0.9, 0.1, 0.8), {4, 6, 9}), (std::vector<int>{6, 4, 9}));
+    const auto last = answer(0.1, -0.8, 0.9);
+    EXPECT_EQ(order.of(last, {4, 6, 9}), (std::vector<int>{4, 9, 6}));
+    EXPECT_EQ(order.of(last, {1, 2, 3}), (std::vector<int>{1, 3, 2}));
 }
 
 TEST(AxisShare, AndValueAreInverse) {

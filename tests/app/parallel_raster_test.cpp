@@ -102,6 +102,51 @@ TEST(GapRaster, SamplesBeyondTheEndsOfAnAxisHaveNoBand) {
     EXPECT_EQ(greatestDensity(rasterGap(counts, 4, kLeft, kRight, 5, 200)), 0);
 }
 
+TEST(GapRaster, BinsThinnerThanARowAreDrawnTogether) {
+    EXPECT_EQ(binsTogether(24, 160), 1);
+    EXPECT_EQ(binsTogether(24, 24), 1);
+    EXPECT_EQ(binsTogether(512, 400), 2);
+    EXPECT_EQ(binsTogether(512, 100), 6);
+    EXPECT_EQ(binsTogether(512, 0), 512);
+    const volume::PlaceCounts counts = counted(someLines(3000));
+    const std::size_t places = volume::placesOf(kBins), half = volume::placesOf(kBins / 2);
+    volume::PlaceCounts joined{std::vector<std::uint64_t>(half * half), {std::vector<double>(half * half)}};
+    const auto place = [](std::size_t of) { return of < std::size_t(kBins) ? of / 2 : of - std::size_t(kBins) / 2; };
+    for (std::size_t i = 0; i < counts.all.size(); ++i) {
+        const std::size_t to = place(i / places) * half + place(i % places);
+        joined.all[to] += counts.all[i], joined.selected[0][to] += counts.selected[0][i];
+    }
+    const PlaceRows left{12, false, 14, 16}, right{12, true, 14, 16}; // a row for two bins
+    const GapDensity found = rasterGap(counts, kBins, left, right, 7, 16);
+    const GapDensity wanted = rasterGap(joined, kBins / 2, left, right, 7, 16);
+    for (std::size_t i = 0; i < wanted.all.size(); ++i) {
+        EXPECT_NEAR(found.all[i], wanted.all[i], 1e-9) << i;
+        EXPECT_NEAR(found.selected[0][i], wanted.selected[0][i], 1e-9) << i;
+    }
+}
+
+TEST(GapRaster, JoinedBinsKeepAllSamples) {
+    const std::vector<Line> lines = someLines(3000);
+    const volume::PlaceCounts counts = counted(lines);
+    double shown = 0, focus = 0;
+    for (const Line& line : lines)
+        if (line.left >= 0 || line.right >= 0) ++shown, focus += line.focus ? 0.5 : 0;
+    for (const double rows : {10.0, 5.0, 3.5, 1.0}) { // 24 bins by 3, 5, 7 and 24: some leave a rest
+        const PlaceRows left{rows, false, rows + 1, rows + 3}, right{rows, true, rows + 1, rows + 3};
+        const int height = int(rows) + 4;
+        const GapDensity density = rasterGap(counts, kBins, left, right, 5, height);
+        for (int column = 0; column < 5; ++column) {
+            double sum = 0, selected = 0;
+            for (int row = 0; row < height; ++row) {
+                sum += density.all[std::size_t(row * 5 + column)];
+                selected += density.selected[0][std::size_t(row * 5 + column)];
+            }
+            EXPECT_NEAR(sum, shown, shown * 1e-6) << rows << " " << column;
+            EXPECT_NEAR(selected, focus, shown * 1e-6) << rows << " " << column;
+        }
+    }
+}
+
 TEST(GapRaster, WhereNoSampleIsNothingIsPainted) {
     const GapDensity density{2, 2, {0, 8, 1, 0}, {{0, 0, 1, 0}}};
     GapLook look{.logDensity = false,

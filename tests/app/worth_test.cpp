@@ -121,5 +121,33 @@ TEST(Worth, EachKindOpensItsView) {
     EXPECT_TRUE(sessionFromJson(toJson(session), "") == session) << "all of it is saved";
 }
 
+TEST(Worth, NumbersAreOfTheStoredTimeThatWasSearched) {
+    volume::DatasetInfo info = plantedCell()->info();
+    info.times = {0, 0.3, 0.69};
+    Session session = plantedSession();
+    session.time = 0.6;
+    const WorthQuestion question = worthQuestion(session, info, WorthSeeingView{}, {*info.findChannel("O2")});
+    EXPECT_EQ(searchedOrigin("as computed", question, info, {}).substr(0, 26), "as computed, at t = 0.69 s");
+    WorthSeeingView when;
+    when.list = WorthList::When;
+    EXPECT_EQ(searchedOrigin("as computed", worthQuestion(session, info, when, {}), info, {}), "as computed");
+    volume::WorthFindings answer;
+    EXPECT_EQ(searchedText(answer, question, info).find("regions"), std::string::npos);
+    answer.regionsLeft = 130;
+    EXPECT_NE(searchedText(answer, question, info).find("without the 130 smallest regions"), std::string::npos);
+}
+
+TEST(Worth, OfUnevenTimesAChangeIsFastRatherThanMost) {
+    volume::DatasetInfo info = plantedCell()->info();
+    Finding change{.kind = FindingKind::Change, .x = *info.findChannel("O2")};
+    change.first = 2, change.time = change.last = 3;
+    const WorthQuestion when = asked(plantedSession(), WorthList::When);
+    EXPECT_NE(sentenceOf(change, when, info).find("O2 changes most between"), std::string::npos);
+    info.times.back() += 10;
+    EXPECT_NE(sentenceOf(change, when, info).find("O2 changes more and faster than usual between"), std::string::npos);
+    change.last = 5;
+    EXPECT_NE(sentenceOf(change, when, info).find(", fastest between"), std::string::npos);
+}
+
 } // namespace
 } // namespace tessera::app

@@ -144,6 +144,33 @@ TEST(GlyphSamplesTest, OneAtTheCursorFollowsIt) {
     ASSERT_EQ(samples.stands.size(), 1u);
     EXPECT_NEAR(samples.values[0][0], 0.25, 1e-6);
     EXPECT_NEAR(samples.values[1][0], 0.5, 1e-6);
+    layer.weight = "a"; // which is least there, and not asked for a place of its own
+    EXPECT_EQ(sampleGlyphs(*slopes(), layer, {.cursor = {0, 8, 12}}).stands.size(), 1u);
+}
+
+TEST(GlyphSamplesTest, TheSurfaceOfALabelIsThatOfOneRegion) {
+    volume::Dataset data;
+    data.info.lattice.size = glm::ivec3(kEdge);
+    data.info.bounds = {glm::dvec3(0), glm::dvec3(kEdge - 1)};
+    data.info.parameters.resize(1);
+    data.info.parameters[0].name = "region";
+    data.info.parameters[0].categorical = true;
+    data.info.parameters[0].type = volume::ScalarType::U8;
+    data.info.parameters[0].ranges = {{1, 5}};
+    data.read = [lattice = data.info.lattice](int, int, int) {
+        volume::Field field = volume::makeField(lattice, volume::ScalarType::U8);
+        for (std::size_t i = 0; i < field.count(); ++i) // 1, then 5, then 3 along x
+            field.as<std::uint8_t>()[i] = i % kEdge < 5 ? 1 : i % kEdge < 10 ? 5 : 3;
+        return field;
+    };
+    const auto source = volume::makeMemorySource(std::move(data), {});
+    GlyphLayer layer{.channel = "region"};
+    layer.place = GlyphPlace::Surface;
+    layer.surface = "region";
+    layer.surfaceValue = 3;
+    const GlyphSamples samples = sampleGlyphs(*source, layer, {});
+    ASSERT_GT(samples.stands.size(), 50u);
+    for (const GlyphStand& stand : samples.stands) EXPECT_GT(stand.place.x, 9) << "no border of 1 and 5";
 }
 
 class GlyphPicturesTest : public test::GlTest {

@@ -138,14 +138,18 @@ public:
         heads_.assign(size, -1);
     }
     bool anyWithin(glm::dvec3 at, double distance) const {
+        const auto near = [&](const glm::dvec3& point) {
+            const glm::dvec3 way = point - at;
+            return glm::dot(way, way) < distance * distance;
+        };
         const glm::ivec3 lo = cellOf(at - distance), hi = cellOf(at + distance);
+        const glm::dvec3 cells = glm::dvec3(hi - lo) + 1.0;
+        if (cells.x * cells.y * cells.z > double(points_.size())) return std::ranges::any_of(points_, near);
         for (int z = lo.z; z <= hi.z; ++z)
             for (int y = lo.y; y <= hi.y; ++y)
                 for (int x = lo.x; x <= hi.x; ++x)
-                    for (int i = heads_[slot({x, y, z})]; i >= 0; i = next_[std::size_t(i)]) {
-                        const glm::dvec3 way = points_[std::size_t(i)] - at;
-                        if (glm::dot(way, way) < distance * distance) return true;
-                    }
+                    for (int i = heads_[slot({x, y, z})]; i >= 0; i = next_[std::size_t(i)])
+                        if (near(points_[std::size_t(i)])) return true;
         return false;
     }
     void add(glm::dvec3 at) {

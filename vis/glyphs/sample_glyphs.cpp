@@ -1,7 +1,9 @@
 #include "vis/glyphs/glyph_parts.h"
 #include "vis/glyphs/make_glyphs.h"
 #include "volume/base/parallel.h"
+#include "volume/flow/flow_channels.h"
 #include "volume/mesh/isosurface.h"
+#include "volume/mesh/region_surface.h"
 #include "volume/reconstruct/probe.h"
 
 #include <algorithm>
@@ -115,11 +117,15 @@ std::vector<double> weightsOf(const volume::BrickSource& source, const GlyphLaye
     const std::vector<bool> present = sample.present(neededChannels(layer));
     std::vector<double> out(stands.size());
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = present[i];
+    if (layer.place == GlyphPlace::Cursor) return out; // it stands where it is put
     if (const auto channel = layer.weight.empty() ? std::nullopt : info.findChannel(layer.weight)) {
         const Range range = info.channelRange(info.channel(*channel));
         const std::vector<double> values = sample(layer.weight);
-        for (std::size_t i = 0; i < out.size(); ++i)
-            out[i] *= std::isnan(values[i]) ? 0 : std::clamp((values[i] - range.lo) / (range.hi - range.lo), 0.0, 1.0);
+        const double width = range.hi - range.lo;
+        const auto share = [&](double value) {
+            return width > 0 ? std::clamp((value - range.lo) / width, 0.0, 1.0) : 1;
+        };
+        for (std::size_t i = 0; i < out.size(); ++i) out[i] *= std::isnan(values[i]) ? 0 : share(values[i]);
     }
     if (layer.seedBrushed && moment.interest) {
         const std::vector<double> interest = sample.interest(*moment.interest);
@@ -135,7 +141,11 @@ volume::SurfaceMesh surfaceToStandOn(const volume::BrickSource& source, const Gl
     const std::optional<int> channel = source.info().findChannel(name);
     if (!channel) return {};
     const int level = source.grid().levelWithin(kSurfaceSamples);
-    volume::SurfaceMesh mesh = volume::extractIsosurface(source, *channel, time, layer.surfaceValue, level, progress);
+    volume::SurfaceMesh mesh =
+        volume::parameterOf(source.info(), *channel).categorical
+            ? volume::extractRegionSurface(source, *channel, time, int(std::lround(layer.surfaceValue)), level,
+                                           progress)
+            : volume::extractIsosurface(source, *channel, time, layer.surfaceValue, level, progress);
     const volume::AxisMaps& axes = source.info().lattice.axes;
     if (!axes.isEven())
         for (glm::vec3& at : mesh.positions) at = glm::vec3(axes.toSheet(mesh.origin + glm::dvec3(at)) - mesh.origin);

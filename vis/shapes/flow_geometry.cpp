@@ -41,7 +41,8 @@ Weight byChannel(const volume::BrickSource& source, int channel, int time, int l
         std::make_shared<const volume::SampleGrid>(volume::readSamples(source, channel, time, level, progress));
     return [samples, range](glm::dvec3 place) {
         const std::optional<double> value = volume::valueAt(*samples, place);
-        return value ? std::clamp((*value - range.lo) / (range.hi - range.lo), 0.0, 1.0) : 0.0;
+        if (!value) return 0.0;
+        return range.hi > range.lo ? std::clamp((*value - range.lo) / (range.hi - range.lo), 0.0, 1.0) : 1.0;
     };
 }
 

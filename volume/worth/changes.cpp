@@ -78,22 +78,36 @@ StepChange stepChangeOf(const WorthSamples& before, const WorthSamples& now, std
     return out;
 }
 
-/// A finding for each step of a channel, with its test.
-std::vector<Finding> testedSteps(const std::vector<StepChange>& steps, int channel) {
+/// The lower quartile of some numbers, at least `least`.
+double lowerQuartile(std::vector<double> numbers, double least) {
+    std::ranges::sort(numbers);
+    return std::max(numbers[numbers.size() / 4], least);
+}
+
+/// A finding for each step of a channel that has samples, with its test. `lengths`: of the steps, by their mean.
+std::vector<Finding> testedSteps(const std::vector<StepChange>& steps, const std::vector<double>& lengths,
+                                 int channel) {
     double sum = 0, squares = 0, n = 0, largest = 0;
-    std::vector<double> ranked;
-    for (const StepChange& each : steps) {
+    std::vector<double> all, rates;
+    std::vector<float> series;
+    const auto rateOf = [&](std::size_t k) { return steps[k].square / (lengths[k] * lengths[k]); };
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+        const StepChange& each = steps[k];
         sum += each.sum, squares += each.sumSquares, n += each.values;
         largest = std::max(largest, each.largest);
-        ranked.push_back(each.square);
+        series.push_back(each.samples > 0 ? float(std::sqrt(each.square)) : std::nanf(""));
+        if (each.samples == 0) continue;
+        all.push_back(each.square);
+        rates.push_back(rateOf(k));
     }
+    if (all.size() < 2) return {};
     const double spread = n > 0 ? 3.29 * std::sqrt(std::max(0.0, squares / n - sum / n * (sum / n))) : 0;
-    std::ranges::sort(ranked);
     const double rounding = 1e-6 * largest;
-    const double usual = std::max(ranked[ranked.size() / 4], rounding * rounding);
+    const double usual = lowerQuartile(all, rounding * rounding), usualRate = lowerQuartile(rates, rounding * rounding);
     std::vector<Finding> out;
     for (std::size_t k = 0; k < steps.size(); ++k) {
         const StepChange& step = steps[k];
+        if (step.samples == 0) continue;
         Finding one{.kind = FindingKind::Change, .x = channel, .region = step.region};
         one.number = step.signedMean;
         one.other = std::sqrt(usual);
@@ -101,16 +115,28 @@ std::vector<Finding> testedSteps(const std::vector<StepChange>& steps, int chann
         one.place = step.place;
         one.time = one.last = int(k) + 1;
         one.first = int(k);
-        for (const StepChange& each : steps) one.series.push_back(float(std::sqrt(each.square)));
-        const double share = spread > 0 ? step.block / spread : 0;
-        one.strength = share / (1 + share);
+        one.series = series;
+        const double share = spread > 0 ? step.block / spread : 0, fast = share / lengths[k];
+        one.strength = fast / (1 + fast);
         // The logarithm of a mean of n squares has the variance 2 / n; the quartile lies 0.67 deviations low.
         const double deviation = std::sqrt(2 / std::max(2.0, step.effective));
-        const double log = usual > 0 && step.square > 0 ? std::log(step.square / usual) : 0;
+        const double log =
+            usual > 0 && step.square > 0 ? std::log(std::min(step.square / usual, rateOf(k) / usualRate)) : 0;
         one.p = share > 0.02 ? normalTails(std::max(0.0, log - 0.67 * deviation) / (1.3 * deviation)) : 1;
         out.push_back(one);
     }
     return out;
+}
+
+/// Lengths of the steps of time, by their mean.
+std::vector<double> stepLengths(const std::vector<double>& times) {
+    const double mean = (times.back() - times.front()) / double(times.size() - 1);
+    std::vector<double> lengths;
+    for (std::size_t t = 1; t < times.size(); ++t) {
+        const double length = (times[t] - times[t - 1]) / mean;
+        lengths.push_back(length > 0 ? length : 1);
+    }
+    return lengths;
 }
 
 } // namespace
@@ -125,22 +151,21 @@ Changes findChanges(const BrickSource& source, const ChangesQuery& query, const 
     std::vector<std::vector<StepChange>> steps(query.channels.size(), std::vector<StepChange>(times - 1));
     WorthSamples before = readWorthSamples(source, asked);
     keepInside(before);
+    std::vector<std::uint8_t> seen = anyPresent(before);
     for (std::size_t t = 1; t < times; ++t) {
         progress.advance(double(t) / double(times), "changes");
         asked.time = int(t);
         WorthSamples now = readWorthSamples(source, asked, {{}, progress.stop});
         keepInside(now);
+        const std::vector<std::uint8_t> present = anyPresent(now);
+        for (std::size_t i = 0; i < seen.size(); ++i) seen[i] |= present[i];
         parallelFor(query.channels.size(), [&](std::size_t c) { steps[c][t - 1] = stepChangeOf(before, now, c); });
         before = std::move(now);
     }
-    for (std::size_t c = 0; c < steps.size(); ++c) {
-        ChannelChanges& of = out.channels.emplace_back(ChannelChanges{query.channels[c], {}, {}});
-        for (const StepChange& each : steps[c]) {
-            of.rms.push_back(std::sqrt(each.square));
-            of.effective.push_back(each.effective);
-        }
-        for (const Finding& each : testedSteps(steps[c], query.channels[c])) out.findings.add(each);
-    }
+    out.samples = double(std::ranges::count(seen, 1));
+    const std::vector<double> lengths = stepLengths(source.info().times);
+    for (std::size_t c = 0; c < steps.size(); ++c)
+        for (const Finding& each : testedSteps(steps[c], lengths, query.channels[c])) out.findings.add(each);
     progress.advance(1, "changes");
     return out;
 }
@@ -156,7 +181,10 @@ std::vector<Finding> joinedSteps(std::vector<Finding> steps) {
         }
         Finding& run = runs.back();
         run.last = each.last;
-        run.p = std::min(run.p, each.p), run.q = std::min(run.q, each.q);
+        if (each.p < run.p) {
+            run.p = each.p, run.q = each.q;
+            run.samples = each.samples, run.effective = each.effective;
+        }
         if (each.strength > run.strength) {
             run.strength = each.strength;
             run.time = each.time;

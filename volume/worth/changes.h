@@ -20,26 +20,21 @@ struct ChangesQuery {
     std::function<double(std::span<const float> values, glm::dvec3 position)> doi = {};
 };
 
-/// How much a channel changes over each step of time: of steps().size() == times - 1.
-struct ChannelChanges {
-    int channel = 0;
-    std::vector<double> rms;       ///< of the differences between both times, in the channel's unit
-    std::vector<double> effective; ///< independent samples of these differences
-};
-
+/// Runs of steps with more change than others, before a choice by rate, and how much was looked at.
 struct Changes {
-    std::vector<ChannelChanges> channels;
-    Findings findings; ///< runs of steps with more change than the lower quartile of all steps; before a choice by rate
+    Findings findings;
+    double samples = 0; ///< grid points with any value at any time
 };
 
 /// Of data of fewer than three times nothing: there is nothing to compare a change with. A step is tested by the ratio
 /// of its mean square change to the lower quartile of all, whose logarithm is about normal for independent steps of
-/// fields with as many independent samples.
-/// Neighbouring steps are joined by joinedSteps.
+/// fields with as many independent samples; and by that of its change per time, whichever says less: of a steady drift
+/// the longest step is no news, nor of noise the shortest. Steps without a sample that is there at both times take no
+/// part, NaN in the series. Neighbouring steps are joined by joinedSteps.
 Changes findChanges(const BrickSource& source, const ChangesQuery& query, const Progress& progress = {});
 
-/// Neighbouring steps of a channel as one finding: when it begins and ends, the later time of the greatest change, and
-/// the place of the greatest change of its first step.
+/// Neighbouring steps of a channel as one finding: when it begins and ends, the later time of the fastest change, the
+/// place of the greatest change of its first step, and the chance and samples of its surest step.
 std::vector<Finding> joinedSteps(std::vector<Finding> steps);
 
 } // namespace tessera::volume

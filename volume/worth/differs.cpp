@@ -74,16 +74,22 @@ std::optional<Finding> differenceOf(const WorthSamples& samples, std::size_t cha
 
 void addRegions(const WorthSamples& samples, Findings& out) {
     if (samples.regions.size() < 2) return;
-    const std::vector<float> selected = selectedOnes(samples, {});
-    const double n = double(selected.size());
-    double chosen = 0;
-    for (const std::uint8_t inside : samples.inside) chosen += inside;
+    // What is void is neither selected nor the rest.
+    std::vector<float> there(samples.count(), 0);
+    const std::vector<std::uint8_t> present = anyPresent(samples);
+    for (std::size_t i = 0; i < there.size(); ++i)
+        if (present[i] == 0 && samples.group[i] == 0) there[i] = std::nanf("");
+    const std::vector<float> selected = selectedOnes(samples, there);
+    double n = 0, chosen = 0;
+    for (const float each : selected)
+        if (!std::isnan(each)) n += 1, chosen += double(each);
     if (chosen < kLeastPart || n - chosen < kLeastPart) return;
     std::optional<Finding> best; // their shares hang together
     for (std::size_t g = 1; g <= samples.regions.size(); ++g) {
-        std::vector<float> region(selected.size());
+        std::vector<float> region = there;
         double both = 0, all = 0;
         for (std::size_t i = 0; i < region.size(); ++i) {
+            if (std::isnan(there[i])) continue;
             region[i] = samples.group[i] == g ? 1.0f : 0.0f;
             all += double(region[i]);
             both += double(region[i]) * double(selected[i]);
@@ -161,28 +167,36 @@ Findings findSelectedTimes(const BrickSource& source, const SelectedTimesQuery& 
     Findings out;
     const std::size_t times = source.info().times.size();
     if (times < 2 || !query.doi) return out;
-    std::vector<double> shares(times);
-    double n = 0, sum = 0;
+    std::vector<double> shares; // of the times with samples
+    double sum = 0;
+    Finding one{.kind = FindingKind::Time};
     for (std::size_t t = 0; t < times; ++t) {
         progress.advance(double(t) / double(times), "times");
-        const WorthSamplesQuery asked{
-            .channels = {}, .time = int(t), .level = query.level, .doiChannels = query.doiChannels, .doi = query.doi};
+        const WorthSamplesQuery asked{.channels = query.channels,
+                                      .time = int(t),
+                                      .level = query.level,
+                                      .doiChannels = query.doiChannels,
+                                      .doi = query.doi};
         const WorthSamples samples = readWorthSamples(source, asked, {{}, progress.stop});
-        for (const std::uint8_t inside : samples.inside) shares[t] += inside;
-        n = double(samples.count());
-        shares[t] /= n;
-        sum += shares[t];
+        const std::vector<std::uint8_t> present = anyPresent(samples);
+        double n = 0, inside = 0;
+        for (std::size_t i = 0; i < present.size(); ++i)
+            if (present[i] != 0) n += 1, inside += samples.inside[i];
+        one.series.push_back(n > 0 ? float(inside / n) : std::nanf(""));
+        if (n == 0) continue;
+        if (shares.empty() || inside / n > one.number) {
+            one.number = inside / n;
+            one.samples = inside;
+            one.time = one.first = one.last = int(t);
+        }
+        shares.push_back(inside / n);
+        sum += shares.back();
     }
     progress.advance(1, "times");
-    const auto [least, most] = std::ranges::minmax_element(shares);
-    if (*most - *least < 1e-12) return out;
-    Finding one{.kind = FindingKind::Time};
-    one.time = one.first = one.last = int(most - shares.begin());
-    one.number = *most;
-    one.other = (sum - *most) / double(times - 1);
-    one.strength = (*most - one.other) / *most;
-    one.samples = n * *most, one.effective = double(times);
-    one.series.assign(shares.begin(), shares.end());
+    if (shares.size() < 2 || one.number - *std::ranges::min_element(shares) < 1e-12) return out;
+    one.other = (sum - one.number) / double(shares.size() - 1);
+    one.strength = (one.number - one.other) / one.number;
+    one.effective = double(shares.size());
     one.p = orderTail(shares);
     out.add(one);
     return out;

@@ -15,8 +15,8 @@ double kolmogorovDistance(std::vector<float>& a, std::vector<float>& b);
 
 /// A test for each parameter (but those of `without`, which the selection is made of): of the distance of both
 /// distributions, and of the correlation with being selected, whichever is stronger. And one for the region whose
-/// share of what is selected and of the rest differ most surely. All for as many samples as are independent where the
-/// selection would be as large and lie elsewhere.
+/// share of what is selected and of the rest differ most surely, of samples with a region or any value. All for as many
+/// samples as are independent where the selection would be as large and lie elsewhere.
 Findings findDifferences(const WorthSamples& samples, std::span<const int> without, const Progress& progress = {});
 
 /// A test for each parameter (but those of `without`): of the difference between the mean in the selection and that
@@ -25,13 +25,15 @@ Findings findDifferences(const WorthSamples& samples, std::span<const int> witho
 Findings findAround(const WorthSamples& samples, std::span<const int> without);
 
 struct SelectedTimesQuery {
+    std::vector<int> channels; ///< samples without a value of any of these do not count
     std::vector<int> doiChannels;
     std::function<double(std::span<const float> values, glm::dvec3 position)> doi;
     int level = 0;
 };
 
-/// The time with the most samples selected, and one test for it: whether the shares of all times follow each other more
-/// closely than in random order. Of fewer than 8 times it finds nothing.
+/// The time with the greatest share of samples selected, and one test for it: whether the shares of all times follow
+/// each other more closely than in random order. Times without samples are left out, NaN in the series. Of fewer than 8
+/// times it finds nothing.
 Findings findSelectedTimes(const BrickSource& source, const SelectedTimesQuery& query, const Progress& progress = {});
 
 } // namespace tessera::volume

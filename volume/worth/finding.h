@@ -29,8 +29,8 @@ struct Finding {
     int x = -1, y = -1;             ///< indices of DatasetInfo::channels(); -1: none
     std::optional<int> region = {}; ///< value of the label; none: everywhere
     /// What the sentence tells: r, distance correlation; r elsewhere, or |r|. Of places: the extreme value, and that of
-    /// the surroundings. Of changes: the greatest mean change, and that of the other steps. Of selections: means or
-    /// shares inside and outside.
+    /// the surroundings. Of changes: the mean change where it is greatest, and the usual RMS change of a step. Of
+    /// selections: means or shares inside and outside.
     double number = 0, other = 0;
     double strength = 0;               ///< 0..1: what entries of a kind are ranked by
     double p = 1;                      ///< chance of this or more where nothing is to be found
@@ -40,7 +40,8 @@ struct Finding {
     Box box = {};                      ///< of places: around them
     Range values{0, 0};                ///< of places: of the samples found
     int time = 0, first = 0, last = 0; ///< indices of times: of a change, the later of the greatest; first and last
-    std::vector<float> series = {};    ///< of changes: RMS change of each step; of times: share selected at each
+    std::vector<float> series =
+        {}; ///< of changes: RMS change of each step; of times: share selected at each; NaN: no samples
 };
 
 /// The tests of a search: findings, and how many tests found nothing.

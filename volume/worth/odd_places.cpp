@@ -24,10 +24,6 @@ struct OddSample {
     double p = 1;
 };
 
-double rankedValue(const std::vector<float>& sorted, double share) {
-    return double(sorted[std::min(sorted.size() - 1, std::size_t(share * double(sorted.size())))]);
-}
-
 struct OddPart {
     std::vector<std::size_t> samples;
     std::vector<float> sorted; ///< their values
@@ -46,20 +42,14 @@ OddPart oddPartOf(const WorthSamples& samples, const std::vector<float>& values,
     std::ranges::sort(part.sorted);
     const double most = std::max(std::abs(double(part.sorted.front())), std::abs(double(part.sorted.back())));
     part.least = 1e-6 * most;
-    part.spread = std::max({2 * (rankedValue(part.sorted, 0.75) - rankedValue(part.sorted, 0.25)),
+    part.spread = std::max({2 * (rankedQuantile(part.sorted, 0.75) - rankedQuantile(part.sorted, 0.25)),
                             0.01 * double(part.sorted.back() - part.sorted.front()), part.least});
     return part;
 }
 
-/// The spread of a part where it is not far less than that of the whole parameter: what is small beside this is not
-/// worth a look.
-void raiseSpread(OddPart& part, const OddPart& all) {
-    part.spread = std::max(part.spread, 0.2 * all.spread);
-}
-
 std::vector<OddSample> oddValues(const std::vector<float>& values, const OddPart& part) {
     std::vector<OddSample> odd;
-    const double median = rankedValue(part.sorted, 0.5);
+    const double median = rankedQuantile(part.sorted, 0.5);
     for (const double side : {-1.0, 1.0}) {
         std::vector<float> away;
         for (const float value : part.sorted)
@@ -200,7 +190,7 @@ Finding oddPlaceOf(const WorthSamples& samples, const std::vector<float>& values
     out.number = double(values[most->sample]);
     out.other = most->other;
     // Of both ends of a jump the one farther from what is usual is the odd one.
-    if (const double usual = rankedValue(part.sorted, 0.5);
+    if (const double usual = rankedQuantile(part.sorted, 0.5);
         kind == FindingKind::Jump && std::abs(out.other - usual) > std::abs(out.number - usual))
         std::swap(out.number, out.other);
     out.place = samples.placeOf(most->sample);
@@ -211,11 +201,12 @@ Finding oddPlaceOf(const WorthSamples& samples, const std::vector<float>& values
     return out;
 }
 
-/// The places of a parameter in a group; the same place as a jump and as oddValues is there once.
-Findings placesOf(const WorthSamples& samples, std::size_t channel, std::size_t group) {
+/// The places of a parameter in a group; the same place as a jump and as oddValues is there once. `leastSpread`: what
+/// is small beside it is not worth a look.
+Findings placesOf(const WorthSamples& samples, std::size_t channel, std::size_t group, double leastSpread) {
     const std::vector<float>& values = samples.values[channel];
     OddPart part = oddPartOf(samples, values, group);
-    if (group > 0) raiseSpread(part, oddPartOf(samples, values, 0));
+    part.spread = std::max(part.spread, leastSpread);
     Findings out;
     if (part.sorted.size() < kFewestSamples || double(part.sorted.back() - part.sorted.front()) <= 10 * part.least)
         return out;
@@ -250,9 +241,16 @@ Findings findOddPlaces(const WorthSamples& samples, const Progress& progress) {
     const std::size_t groups = samples.regions.empty() ? 1 : samples.regions.size();
     std::vector<Findings> found(samples.values.size() * groups);
     progress.advance(0, "odd places");
+    std::vector<double> leastSpreads(samples.values.size()); // of parts beside the whole parameter
+    if (!samples.regions.empty())
+        parallelFor(leastSpreads.size(), [&](std::size_t c) {
+            if (progress.stop.stop_requested()) throw Cancelled();
+            leastSpreads[c] = 0.2 * oddPartOf(samples, samples.values[c], 0).spread;
+        });
     parallelFor(found.size(), [&](std::size_t i) {
         if (progress.stop.stop_requested()) throw Cancelled();
-        found[i] = placesOf(samples, i / groups, samples.regions.empty() ? 0 : 1 + i % groups);
+        found[i] =
+            placesOf(samples, i / groups, samples.regions.empty() ? 0 : 1 + i % groups, leastSpreads[i / groups]);
     });
     progress.advance(1, "odd places");
     Findings all;

@@ -38,10 +38,6 @@ double incompleteBeta(double a, double b, double x) {
     return x < (a + 1) / (a + b + 2) ? front * betaFraction(a, b, x) / a : 1 - front * betaFraction(b, a, 1 - x) / b;
 }
 
-double tailQuantile(std::span<const float> sorted, double share) {
-    return double(sorted[std::min(sorted.size() - 1, std::size_t(share * double(sorted.size())))]);
-}
-
 } // namespace
 
 double normalTails(double z) {
@@ -76,9 +72,13 @@ double correlationTail(double r, double samples) {
     return rest <= 0 ? 0 : studentTails(r * std::sqrt((samples - 2) / rest), samples - 2);
 }
 
+double rankedQuantile(std::span<const float> sorted, double share) {
+    return double(sorted[std::min(sorted.size() - 1, std::size_t(share * double(sorted.size())))]);
+}
+
 double expectedBeyond(std::span<const float> sorted, double value, double samples, double least) {
     if (sorted.empty()) return samples;
-    const double median = tailQuantile(sorted, 0.5), upper = tailQuantile(sorted, 0.75);
+    const double median = rankedQuantile(sorted, 0.5), upper = rankedQuantile(sorted, 0.75);
     constexpr double kHeavier = 2;
     const double scale = std::max({kHeavier * (upper - median) / std::log(2.0), least, 1e-300});
     return value <= median ? samples : samples * 0.5 * std::exp(-(value - median) / scale);

@@ -20,6 +20,9 @@ double kolmogorovTail(double distance, double samples);
 /// Two-sided p-value of a Pearson correlation of so many independent samples; 1 below 4.
 double correlationTail(double r, double samples);
 
+/// The value of rising `sorted`, which has some, below which this share of them lies.
+double rankedQuantile(std::span<const float> sorted, double share);
+
 /// How many of `samples` values are expected as far out as `value` by chance, if the tail is exponential, and twice as
 /// wide as between its median and its upper quartile: more than in normal or uniform noise and in squares of it, so
 /// that these are never surprising. `sorted`: distances from the middle, all of at least 0, rising. `least`: of the

@@ -77,8 +77,9 @@ WorthPicture pictureHistogram(const WorthSamples& samples, const Finding& findin
 WorthPicture pictureOf(const WorthSamples& samples, const Finding& finding) {
     if (!finding.series.empty()) {
         WorthPicture out;
-        const float most = *std::ranges::max_element(finding.series);
-        for (const float each : finding.series) out.all.push_back(most > 0 ? each / most : 0);
+        float most = 0;
+        for (const float each : finding.series) most = std::max(most, std::isnan(each) ? 0 : each);
+        for (const float each : finding.series) out.all.push_back(most > 0 || std::isnan(each) ? each / most : 0);
         out.mark = finding.kind == FindingKind::Change ? finding.time - 1 : finding.time;
         return out;
     }

@@ -10,8 +10,9 @@ namespace tessera::volume {
 
 /// Either a density of two parameters, or one or two rows of heights: a histogram, or a curve over the times.
 struct WorthPicture {
-    int side = 0;                 ///< of a density: cells along each axis; 0: heights
-    std::vector<float> all;       ///< 0..1; of a density x fastest, row 0 = the lowest y; of curves from the first time
+    int side = 0;           ///< of a density: cells along each axis; 0: heights
+    std::vector<float> all; ///< 0..1; of a density x fastest, row 0 = the lowest y; of curves from the first time,
+                            ///< NaN where there is nothing
     std::vector<float> part = {}; ///< of a histogram: of what was found or is selected, 0..1
     int mark = -1;                ///< of a curve: the time found
     bool operator==(const WorthPicture&) const = default;

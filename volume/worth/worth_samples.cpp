@@ -7,8 +7,9 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
-#include <set>
+#include <utility>
 
 namespace tessera::volume {
 
@@ -61,11 +62,17 @@ void readBrick(const BrickSource& source, const WorthSamplesQuery& query, glm::i
 }
 
 void findGroups(const std::vector<float>& labels, WorthSamples& out) {
-    constexpr std::size_t kMost = 255;
-    std::set<int> values;
+    constexpr std::size_t kMost = 255; // groups have a byte
+    std::map<int, std::size_t> counts;
     for (const float label : labels)
-        if (!std::isnan(label) && values.size() < kMost) values.insert(int(std::lround(label)));
-    out.regions.assign(values.begin(), values.end());
+        if (!std::isnan(label)) ++counts[int(std::lround(label))];
+    std::vector<std::pair<std::size_t, int>> largest;
+    for (const auto& [value, count] : counts) largest.emplace_back(count, value);
+    std::ranges::stable_sort(largest, [](const auto& a, const auto& b) { return a.first > b.first; });
+    out.regionsLeft = largest.size() - std::min(largest.size(), kMost);
+    largest.resize(largest.size() - out.regionsLeft);
+    for (const auto& [count, value] : largest) out.regions.push_back(value);
+    std::ranges::sort(out.regions);
     out.group.assign(labels.size(), 0);
     for (std::size_t i = 0; i < labels.size(); ++i) {
         if (std::isnan(labels[i])) continue;
@@ -113,6 +120,14 @@ void keepInside(WorthSamples& samples) {
     for (std::vector<float>& values : samples.values)
         for (std::size_t i = 0; i < values.size(); ++i)
             if (samples.inside[i] == 0) values[i] = kAbsentSample;
+}
+
+std::vector<std::uint8_t> anyPresent(const WorthSamples& samples) {
+    std::vector<std::uint8_t> present(samples.count());
+    for (const std::vector<float>& values : samples.values)
+        for (std::size_t i = 0; i < values.size(); ++i)
+            if (!std::isnan(values[i])) present[i] = 1;
+    return present;
 }
 
 } // namespace tessera::volume

@@ -30,7 +30,8 @@ struct WorthSamples {
     glm::ivec3 size{0};
     std::vector<int> channels;                 ///< as asked
     std::vector<std::vector<float>> values;    ///< [position in channels][sample], x fastest; NaN: absent
-    std::vector<int> regions;                  ///< values of the label that are there, rising
+    std::vector<int> regions;                  ///< values of the label that are there, rising; the largest ones
+    std::size_t regionsLeft = 0;               ///< further values, whose samples are in none
     std::vector<std::uint8_t> group;           ///< by sample: 1 + position in `regions`; 0: in none; empty: no label
     std::vector<std::uint8_t> inside;          ///< by sample: 1 = selected; empty: nothing is
     std::array<std::vector<double>, 3> places; ///< coordinates of samples by their index along an axis
@@ -56,5 +57,8 @@ WorthSamples readWorthSamples(const BrickSource& source, const WorthSamplesQuery
 
 /// Makes samples absent that are not selected.
 void keepInside(WorthSamples& samples);
+
+/// By sample: 1 where any channel has a value.
+std::vector<std::uint8_t> anyPresent(const WorthSamples& samples);
 
 } // namespace tessera::volume

@@ -112,24 +112,27 @@ WorthSamplesQuery worthSamplesOf(const WorthQuery& query, int level) {
     return out;
 }
 
-/// All tests of a list, and the samples that those of one time are of.
+/// All tests of a list, the samples that those of one time are of, and how many have a value.
 Findings searchedTests(const BrickSource& source, const WorthQuery& query, int timesLevel, WorthSamples& samples,
-                       const Progress& progress) {
-    if (query.search == WorthSearch::When)
-        return findChanges(
-                   source,
-                   {query.channels, timesLevel, query.label, query.doiChannels, query.selected ? query.doi : nullptr},
-                   progress)
-            .findings;
+                       double& count, const Progress& progress) {
+    if (query.search == WorthSearch::When) {
+        Changes changes = findChanges(
+            source, {query.channels, timesLevel, query.label, query.doiChannels, query.selected ? query.doi : nullptr},
+            progress);
+        count = changes.samples;
+        return std::move(changes.findings);
+    }
     samples = readWorthSamples(source, worthSamplesOf(query, query.level), progress.part(0, 0.4));
+    if (query.search == WorthSearch::Views && query.selected) keepInside(samples);
+    count = double(std::ranges::count(anyPresent(samples), 1));
     Findings all;
     if (query.search == WorthSearch::WhatElse) {
         joinFindings(all, findDifferences(samples, query.doiChannels, progress.part(0.4, 0.6)));
         joinFindings(all, findAround(samples, query.doiChannels));
-        joinFindings(all, findSelectedTimes(source, {query.doiChannels, query.doi, timesLevel}, progress.part(0.6, 1)));
+        joinFindings(all, findSelectedTimes(source, {query.channels, query.doiChannels, query.doi, timesLevel},
+                                            progress.part(0.6, 1)));
         return all;
     }
-    if (query.selected) keepInside(samples);
     joinFindings(all, findOddPlaces(samples, progress.part(0.4, 0.5)));
     joinFindings(all, findDependences(samples, progress.part(0.5, 1)));
     return all;
@@ -153,10 +156,9 @@ WorthFindings findWorthSeeing(const BrickSource& source, const WorthQuery& query
     if (!out.missing.empty()) return out;
     const int timesLevel = std::max(query.level, worthLevel(source.grid(), query.channels.size(), kNumbersOfTimes));
     if (query.search == WorthSearch::When) out.level = timesLevel;
-    const glm::dvec3 size(source.grid().levelSamples(out.level));
-    out.samples = size.x * size.y * size.z;
     WorthSamples samples;
-    Findings all = searchedTests(source, query, timesLevel, samples, progress);
+    Findings all = searchedTests(source, query, timesLevel, samples, out.samples, progress);
+    out.regionsLeft = samples.regionsLeft;
     out.tests = std::max(all.tests, all.found.size());
     keepDiscoveries(all, query.rate);
     std::erase_if(all.found, [](const Finding& each) { return !isWorth(each); });

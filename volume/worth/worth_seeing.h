@@ -26,9 +26,10 @@ struct WorthFindings {
     std::vector<Finding> found;
     std::vector<WorthPicture> pictures; ///< one for each
     std::size_t tests = 0;
-    int level = 0;            ///< of the samples looked at, of the time searched
-    double samples = 0;       ///< of the grid at that level
-    std::string missing = {}; ///< why there is nothing to search: no selection, one time; "": there is
+    int level = 0;               ///< of the samples looked at, of the time searched
+    double samples = 0;          ///< grid points looked at that have any value, of lists over the times at any of these
+    std::size_t regionsLeft = 0; ///< that are searched with all others only, not by themselves
+    std::string missing = {};    ///< why there is nothing to search: no selection, one time; "": there is
 };
 
 /// Levels of detail by how many numbers are read at most: samples times channels.

@@ -45,7 +45,7 @@ ImU32 areaColor(const std::vector<vis::Brush>& brushes, const BranchPath& path) 
 void tellBranch(const ViewContext& context, const Branches& branches, const BranchArea& area) {
     const volume::DatasetInfo& info = context.numbers->info();
     std::string text = branchText(context.session.selection.brushes, area.path) + "\n" +
-                       formatShare(area.own.volume / branches.of({}).volume) + " of all, " +
+                       formatShare(area.own.volume / branches.of({}).volume) + " of the box, " +
                        formatVolume(area.own.volume, info.lengthUnit);
     text +=
         branches.level() > 0 ? "\n(estimated from a coarser level)" : "\n" + formatCount(area.own.samples) + " samples";
@@ -75,7 +75,8 @@ void drawBranchAreas(ViewContext& context, const Branches& branches, ImVec2 min,
         draw.AddRect(from, to, plotColors().frame);
         if (to.x - from.x > em() * 3 && to.y - from.y > em() * 1.4f)
             addFittedWithBackdrop(draw, {from.x + em() * 0.3f, from.y + em() * 0.2f}, {0, 0}, plotColors().text,
-                                  formatShare(area.own.volume / branches.of({}).volume) + "  " +
+                                  (branches.level() > 0 ? "about " : "") +
+                                      formatShare(area.own.volume / branches.of({}).volume) + "  " +
                                       branchText(brushes, area.path),
                                   to.x - from.x - em() * 0.6f);
         if (selected && !selected->empty() && beginsWith(area.path, *selected))

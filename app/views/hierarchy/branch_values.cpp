@@ -54,11 +54,15 @@ void listBranches(const Branches& branches, const BranchPath& path, std::size_t 
 
 } // namespace
 
+std::string levelName(const vis::Brush& brush) {
+    return (brush.inverted ? "not " : "") + brushName(brush);
+}
+
 std::vector<BranchLevel> branchLevels(const std::vector<vis::Brush>& brushes, const Branches& branches) {
     std::vector<BranchLevel> levels;
     for (std::size_t i = 0; i < std::min(brushes.size(), branches.levels()); ++i)
-        levels.push_back({(brushes[i].inverted ? "not " : "") + brushName(brushes[i]), brushes[i].enabled,
-                          branches.selected(brushes, i + 1), branches.selected(brushes, i)});
+        levels.push_back({levelName(brushes[i]), brushes[i].enabled, branches.selected(brushes, i + 1),
+                          branches.selected(brushes, i)});
     return levels;
 }
 
@@ -103,7 +107,7 @@ Table branchTable(const std::vector<vis::Brush>& brushes, const Branches& branch
                   if (!path.empty()) path.pop_back();
                   return own / branches.of(path).volume;
               });
-    addColumn(table, paths, {.name = "share of all", .head = "Of all", .kind = NumberKind::Share},
+    addColumn(table, paths, {.name = "share of the box", .head = "Of the box", .kind = NumberKind::Share},
               [&](const BranchPath& path) { return branches.of(path).volume / all.volume; });
     if (branches.level() > 0) table.notes.push_back("estimated from a coarser level");
     if (branches.levels() > kMostBranchLevels)
@@ -120,7 +124,7 @@ Plot branchesPlot(const std::vector<vis::Brush>& brushes, const std::vector<Bran
     double most = 0;
     for (std::size_t i = 0; i < levels; ++i) {
         if (!brushes[i].enabled) continue;
-        PlotSeries line{.name = (brushes[i].inverted ? "not " : "") + brushName(brushes[i]),
+        PlotSeries line{.name = levelName(brushes[i]),
                         .points = {},
                         .color = brushes[i].color * (dark ? 1 : kOnWhiteGround),
                         .dots = overTime.size() < 40};
@@ -133,7 +137,10 @@ Plot branchesPlot(const std::vector<vis::Brush>& brushes, const std::vector<Bran
         plot.series.push_back(std::move(line));
     }
     plot.x = {.title = timeWord(info), .range = {info.times.front(), info.times.back()}, .unit = info.timeUnit};
-    plot.y = {.title = "share of all", .range = {0, most > 0 ? most * 1.06 : 1}, .unit = "%"};
+    plot.y = {.title = overTime.empty() || overTime.front().level() == 0 ? "share of the box"
+                                                                         : "share of the box, estimated",
+              .range = {0, most > 0 ? most * 1.06 : 1},
+              .unit = "%"};
     plot.cursorX = time;
     return plot;
 }

@@ -7,9 +7,12 @@
 /// What the hierarchy of brushes says, as values: its levels, its branches as areas, and both over time.
 namespace tessera::app {
 
+/// Of a brush: "not T" of an inverted one.
+std::string levelName(const vis::Brush& brush);
+
 /// A level of the chain: the brush at that place, with what is selected down to it.
 struct BranchLevel {
-    std::string name; ///< "not T" of an inverted one
+    std::string name;
     bool enabled = true;
     volume::Tally own, above; ///< selected by the brushes up to this one, and by those before it
 };

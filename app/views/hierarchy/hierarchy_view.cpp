@@ -61,7 +61,7 @@ void drawBreadcrumb(ViewContext& context, ToolRow& tools) {
     for (std::size_t i = 0; i < brushes.size(); ++i)
         if (brushes[i].enabled) depth = i + 1;
     for (std::size_t i = 0; i <= brushes.size(); ++i) {
-        const std::string name = i == 0 ? "Everything" : (brushes[i - 1].inverted ? "not " : "") + brushes[i - 1].name;
+        const std::string name = i == 0 ? "Everything" : levelName(brushes[i - 1]);
         const std::string text = fitText((i > 0 ? "> " : "") + name, em() * 9);
         if (!tools.next(buttonWidth(text.c_str()), em() * 0.2f)) continue;
         ImGui::PushID(static_cast<int>(i));
@@ -105,7 +105,8 @@ void drawHierarchyTools(ViewContext& context, const HierarchyShown& shown, Hiera
                      const std::string title =
                          i < shown.levels.size()
                              ? shown.levels[i].name + ": " +
-                                   formatShare(shown.levels[i].own.volume / shown.now->of({}).volume) + " of all"
+                                   formatShare(shown.levels[i].own.volume / shown.now->of({}).volume) + " of the box" +
+                                   (shown.now->level() > 0 ? ", estimated" : "")
                              : "what is left";
                      plots.push_back(levelPage(info, shown.plots[i], title, log, focus, form.dark));
                  }
@@ -126,8 +127,7 @@ void drawLevelHead(ViewContext& context, std::size_t level, float width) {
     if (ImGui::IsItemHovered()) tooltip("Use this level");
     ImGui::SameLine(0, em() * 0.3f);
     const float buttons = ImGui::GetFrameHeight() * 3 + em() * 0.8f;
-    const std::string name =
-        fitText((brush.inverted ? "not " : "") + brush.name, width - ImGui::GetFrameHeight() - buttons);
+    const std::string name = fitText(levelName(brush), width - ImGui::GetFrameHeight() - buttons);
     ImGui::AlignTextToFramePadding();
     ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(brushColor(brush)), "%s", name.c_str());
     if (ImGui::IsItemHovered()) tooltip(regionText(context.numbers->info(), brush.region).c_str());
@@ -168,8 +168,9 @@ void takeBrushes(Session& session, std::size_t level, std::vector<vis::Brush> ed
     if (level < all.size()) {
         // A brush drawn anew in the place of another keeps what the user gave that.
         if (edited.size() == 1) {
-            edited[0].name = all[level].name, edited[0].color = all[level].color;
-            edited[0].combine = all[level].combine;
+            const vis::Region region = std::move(edited[0].region);
+            edited[0] = all[level];
+            edited[0].region = region;
         }
         all.erase(all.begin() + static_cast<std::ptrdiff_t>(level));
     } else {
@@ -216,7 +217,7 @@ void drawLevel(ViewContext& context, HierarchyCache& cache, const HierarchyShown
         const double all = shown.now->of({}).volume;
         if (!own.enabled) return ImGui::TextDisabled("switched off");
         const std::string above = own.above.volume > 0 ? formatShare(own.own.volume / own.above.volume) : "-";
-        fittedText(formatShare(own.own.volume / all) + " of all, " + above + " of the level above", size.x);
+        fittedText(formatShare(own.own.volume / all) + " of the box, " + above + " of the level above", size.x);
         ImGui::SetCursorScreenPos({origin.x, ImGui::GetCursorScreenPos().y});
         fittedText(formatVolume(own.own.volume, info.lengthUnit) +
                        (shown.now->level() > 0 ? ", estimated" : ", " + formatCount(own.own.samples) + " samples"),

@@ -78,8 +78,11 @@ LevelPlot levelPlot(const volume::DatasetInfo& info, const std::vector<std::stri
 
 BrushedQuery levelQuery(const Session& session, const volume::DatasetInfo& info, const LevelPlot& plot,
                         std::size_t before) {
-    Session upTo = session;
-    upTo.selection.brushes.resize(std::min(before, upTo.selection.brushes.size()));
+    Session upTo; // no more than the query needs: it is asked for every frame
+    upTo.time = session.time, upTo.cursor = session.cursor, upTo.stretch = session.stretch;
+    upTo.lenses = session.lenses, upTo.camera = session.camera, upTo.data = session.data;
+    const std::vector<vis::Brush>& all = session.selection.brushes;
+    upTo.selection.brushes.assign(all.begin(), all.begin() + std::ptrdiff_t(std::min(before, all.size())));
     for (vis::Lens& lens : upTo.lenses) lens.marks = lens.marks && !upTo.selection.brushes.empty();
     return brushedQuery(upTo, info, plot.indices, plot.ranges, plot.bins, plot.indices.size() > 1);
 }
@@ -101,7 +104,13 @@ bool drawLevelPlot(ViewContext& context, LevelCache& cache, const LevelPlot& plo
     mouseArea("plot", {frame.width(), frame.height()},
               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const bool hovered = ImGui::IsItemHovered();
-    const bool changed = editBrushes(cache.drag, brushes, frame, plot.channels, {BrushTool::Rectangle, softness});
+    bool changed = editBrushes(cache.drag, brushes, frame, plot.channels, {BrushTool::Rectangle, softness});
+    // A level has one brush: a further one takes its place.
+    if (brushes.brushes.size() > 1) {
+        brushes.brushes.erase(brushes.brushes.begin(), brushes.brushes.end() - 1);
+        cache.drag.brush = 0;
+        changed = true;
+    }
     if (cache.drag.active) context.interacting = true;
     const ImU32 focus = focusColor(context.session);
     draw.PushClipRect(frame.min, frame.max, true);

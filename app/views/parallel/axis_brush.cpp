@@ -249,9 +249,10 @@ bool editGapBrush(BrushDrag& drag, vis::Selection& selection, const ParallelAxis
         const ImVec2 start{static_cast<float>(drag.start.x), static_cast<float>(drag.start.y)};
         if (const auto stroke = gapStroke(left, right, start, mouse, axisReach())) {
             vis::LassoRegion region = strokeRegion(left, right, *stroke, softness);
-            if (drag.brush < 0 && region.points.size() > 2)
+            const bool holds = region.points.size() > 2; // no line rises further than over the whole height
+            if (drag.brush < 0 && holds)
                 beginDragged(drag, selection, region);
-            else if (drag.brush >= 0)
+            else if (drag.brush >= 0 && holds)
                 selection.brushes[static_cast<std::size_t>(drag.brush)].region = region;
         }
     }

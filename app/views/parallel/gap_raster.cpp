@@ -35,27 +35,55 @@ void addRows(double* differences, int height, double from, double to, double amo
     edge(to, -density);
 }
 
+/// Places of an axis, where neighbouring bins are one if they are thinner than a row.
+struct JoinedPlaces {
+    std::vector<int> of;     ///< by place: which of those below, -1: none
+    std::vector<Range> rows; ///< of each
+};
+
+JoinedPlaces joinedPlaces(const PlaceRows& rows, int bins) {
+    JoinedPlaces out;
+    const int each = binsTogether(bins, rows.axis);
+    for (int place = 0; place < static_cast<int>(volume::placesOf(bins)); ++place) {
+        const auto own = placeRows(rows, bins, place);
+        if (own && place < bins && place % each > 0)
+            out.rows.back() = {std::min(out.rows.back().lo, own->lo), std::max(out.rows.back().hi, own->hi)};
+        else if (own)
+            out.rows.push_back(*own);
+        out.of.push_back(own ? static_cast<int>(out.rows.size()) - 1 : -1);
+    }
+    return out;
+}
+
 std::vector<GapBand> gapBands(const volume::PlaceCounts& counts, int bins, const PlaceRows& left,
                               const PlaceRows& right) {
     std::vector<GapBand> bands;
-    const std::size_t places = volume::placesOf(bins);
-    for (std::size_t a = 0; a < places; ++a) {
-        const auto rowsA = placeRows(left, bins, static_cast<int>(a));
-        if (!rowsA) continue;
+    const std::size_t places = volume::placesOf(bins), groups = counts.selected.size();
+    const auto absent = static_cast<std::size_t>(volume::absentPlace(bins));
+    const JoinedPlaces from = joinedPlaces(left, bins), to = joinedPlaces(right, bins);
+    std::vector<int> bandOf(from.rows.size() * to.rows.size(), -1); // by what it runs from and to
+    for (std::size_t a = 0; a < places; ++a)
         for (std::size_t b = 0; b < places; ++b) {
             const std::size_t at = a * places + b;
-            if (counts.all[at] == 0) continue;
-            const auto rowsB = placeRows(right, bins, static_cast<int>(b));
-            const auto absent = static_cast<std::size_t>(volume::absentPlace(bins));
-            if (!rowsB || (a == absent && b == absent)) continue;
-            GapBand& band = bands.emplace_back(GapBand{*rowsA, *rowsB, double(counts.all[at]), {}});
-            for (const std::vector<double>& group : counts.selected) band.selected.push_back(group[at]);
+            if (counts.all[at] == 0 || from.of[a] < 0 || to.of[b] < 0 || (a == absent && b == absent)) continue;
+            const auto i = static_cast<std::size_t>(from.of[a]), k = static_cast<std::size_t>(to.of[b]);
+            int& known = bandOf[i * to.rows.size() + k];
+            if (known < 0) {
+                known = static_cast<int>(bands.size());
+                bands.push_back({from.rows[i], to.rows[k], 0, std::vector<double>(groups)});
+            }
+            GapBand& band = bands[static_cast<std::size_t>(known)];
+            band.all += double(counts.all[at]);
+            for (std::size_t g = 0; g < groups; ++g) band.selected[g] += counts.selected[g][at];
         }
-    }
     return bands;
 }
 
 } // namespace
+
+int binsTogether(int bins, double rows) {
+    return std::max(1, static_cast<int>(std::ceil(bins / std::max(1.0, rows) - kRounding)));
+}
 
 std::optional<Range> placeRows(const PlaceRows& rows, int bins, int place) {
     if (place == volume::absentPlace(bins)) return Range{rows.markFrom, rows.markTo};

@@ -94,7 +94,9 @@ private:
             focus.push_back(ImGui::ColorConvertFloat4ToU32({color.x, color.y, color.z, 1}));
         GapLook look = gapLook(look_.logDensity, form_.dark, focus);
         look.most = densities.most;
-        look.unit = double(first.bottom - first.top) * kPixelsPerPoint / state_.result->densities.bins;
+        const int bins = state_.result->densities.bins;
+        const double rows = double(first.bottom - first.top) * kPixelsPerPoint;
+        look.unit = rows * binsTogether(bins, rows) / bins;
         for (std::size_t g = 0; g < densities.gaps.size(); ++g)
             out_.push_back(
                 {Picture{.box = {{double(plot_.axes[g].x), double(first.top)}, {double(plot_.axes[g + 1].x), bottom()}},
@@ -342,6 +344,8 @@ Table parallelTable(const std::vector<ParallelState>& states, const volume::Data
     }
     if (!selected.empty()) sayWeighted(table.columns.back());
     if (states.size() > 1) table.columns.insert(table.columns.begin(), std::move(times));
+    if (std::ranges::any_of(states, [](const ParallelState& state) { return state.result->densities.level > 0; }))
+        table.notes.push_back("estimated from a coarser level");
     table.notes.push_back("ends of bins are empty where samples lack the parameter; one end, where they lie beyond it");
     return table;
 }

@@ -99,7 +99,8 @@ void GapPictures::update(vis::TexturesIn where, const ParallelPlot& plot,
     const PlotDensities densities = plotDensities(plot, result->densities, key.width, key.height);
     GapLook look = gapLook(logDensity, key.dark, focus);
     look.most = densities.most;
-    look.unit = double(key.axisHeight) / result->densities.bins;
+    const int bins = result->densities.bins;
+    look.unit = double(key.axisHeight) * binsTogether(bins, key.axisHeight) / bins;
     textures_.resize(densities.gaps.size());
     for (std::size_t g = 0; g < textures_.size(); ++g)
         textures_[g].upload(where, {key.width, key.height}, gapPixels(densities.gaps[g], look));

@@ -2,6 +2,7 @@
 
 #include "app/pane/view_context.h"
 #include "app/tools/brush_edit.h"
+#include "app/views/parallel/parallel_axes.h"
 #include "volume/bricks/brick_cache.h"
 #include "volume/bricks/source_at_time.h"
 
@@ -97,6 +98,18 @@ double ParallelResult::samples() const {
     return sum;
 }
 
+std::size_t ParallelResult::bytes() const {
+    std::size_t sum = 0;
+    const auto add = [&](const volume::PlaceCounts& counts) {
+        sum += counts.all.size() * sizeof(counts.all.front());
+        for (const std::vector<double>& group : counts.selected) sum += group.size() * sizeof(double);
+    };
+    for (const volume::PlaceCounts& axis : densities.axes) add(axis);
+    for (const volume::PlaceCounts& gap : densities.gaps) add(gap);
+    add(densities.cube);
+    return sum;
+}
+
 ParallelResult readDensities(const std::shared_ptr<const volume::BrickSource>& source, const ParallelQuery& query,
                              int level, const Progress& progress) {
     const volume::SourceAtTime shown = volume::sourceAt(source, query.brushed.time);
@@ -139,6 +152,22 @@ std::shared_ptr<const ParallelResult> AsyncDensities::get(ViewContext& context, 
             return previous.bins == now.bins && previous.together == now.together &&
                    std::ranges::equal(previous.axes, now.axes, sameAxis);
         });
+}
+
+const std::vector<int>& KeptOrder::of(const std::shared_ptr<const StatisticsResult>& result,
+                                      const std::vector<int>& channels) {
+    if (result_ == result && channels_ == channels) return order_;
+    const std::size_t size = channels.size();
+    std::vector<double> matrix(size * size);
+    for (const volume::JointHistogram& joint : result->statistics.joint)
+        for (const auto& [a, b] : {std::pair{joint.x, joint.y}, std::pair{joint.y, joint.x}})
+            matrix[std::size_t(a) * size + std::size_t(b)] = joint.correlation;
+    order_.clear();
+    for (const int position : correlationOrder(matrix, static_cast<int>(size)))
+        order_.push_back(channels[std::size_t(position)]);
+    result_ = result;
+    channels_ = channels;
+    return order_;
 }
 
 } // namespace tessera::app

@@ -39,11 +39,15 @@ struct ParallelResult {
     bool brushed() const { return query.groups > 0; }
     /// Samples with a value on any axis.
     double samples() const;
+    /// Memory that its numbers take.
+    std::size_t bytes() const;
 };
 
 /// Counts at a level of detail. Channels a brush names but the data lack count as absent. Throws Error, Cancelled.
 ParallelResult readDensities(const std::shared_ptr<const volume::BrickSource>& source, const ParallelQuery& query,
                              int level, const Progress& progress = {});
+
+constexpr std::size_t kKeptDensities = std::size_t(256) << 20; ///< bytes, of the answers that a view keeps
 
 /// One per view, in its cache.
 class AsyncDensities {
@@ -55,9 +59,23 @@ public:
     std::string failure() const { return query_.failure(); }
 
 private:
-    AsyncQuery<ParallelQuery, ParallelResult> query_{{.answers = 16}};
+    using Answers = AsyncQuery<ParallelQuery, ParallelResult>;
+    /// One of 12 axes, 512 bins and 3 colours is 93 MB.
+    Answers query_{
+        {.answers = 8, .size = kKeptDensities, .sizeOf = [](const ParallelResult& result) { return result.bytes(); }}};
     std::shared_ptr<const volume::BrickSource> source_;
     std::shared_ptr<const volume::BrickSource> coarse_; ///< its coarse bricks, kept while a brush is dragged
+};
+
+/// The order of axes that their correlations ask for, which takes a moment to find: kept until others are asked for.
+class KeptOrder {
+public:
+    /// These channels in their order; the answer is of them and of all their pairs.
+    const std::vector<int>& of(const std::shared_ptr<const StatisticsResult>& result, const std::vector<int>& channels);
+
+private:
+    std::shared_ptr<const StatisticsResult> result_;
+    std::vector<int> channels_, order_;
 };
 
 } // namespace tessera::app

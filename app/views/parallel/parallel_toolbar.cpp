@@ -88,7 +88,7 @@ void drawMoreOf(ViewContext& context, ToolRow& tools, ParallelCoordinatesView& v
 void drawSelected(ViewContext& context, ToolRow& tools, const ParallelResult* result) {
     const Session& session = context.session;
     const float button = ImGui::GetFrameHeight(), gap = em() * 0.3f;
-    const float least = button + gap + ImGui::CalcTextSize("99.99 % selected").x;
+    const float least = button + gap + ImGui::CalcTextSize("99.99 % selected, estimated").x;
     if (!tools.next(least)) return;
     const ImVec2 place = ImGui::GetCursorPos();
     if (session.selection.brushes.empty()) {
@@ -105,9 +105,13 @@ void drawSelected(ViewContext& context, ToolRow& tools, const ParallelResult* re
         for (std::size_t i = 0; i < counts.all.size(); ++i) selected += counts.selectedAt(i);
         ImGui::SameLine(0, gap);
         ImGui::AlignTextToFramePadding();
-        ImGui::TextUnformatted((formatShare(selected / std::max(1.0, result->samples())) + " selected").c_str());
+        const bool estimated = result->densities.level > 0;
+        const std::string share = formatShare(selected / std::max(1.0, result->samples()));
+        ImGui::TextUnformatted((share + (estimated ? " selected, estimated" : " selected")).c_str());
         if (ImGui::IsItemHovered())
-            tooltip((selectionName(session) + ": share of the samples that have a value on any of the axes").c_str());
+            tooltip((selectionName(session) + ": share of the samples that have a value on any of the axes" +
+                     (estimated ? "\n(estimated from a coarser level)" : ""))
+                        .c_str());
     }
     ImGui::SetCursorPos(place);
     ImGui::Dummy({least, button});

@@ -23,6 +23,7 @@ constexpr float kMostRight = 3.5f;     ///< of room behind the last axis, em
 struct ParallelCache : ParallelLayoutCache {
     AsyncDensities answers;
     AsyncStatistics correlations;
+    KeptOrder order;
     BrushDrag drag;
     std::vector<GapPictures> pictures; ///< by time
     int heldTitle = -1;                ///< axis whose title is dragged
@@ -42,15 +43,7 @@ std::vector<int> orderedByCorrelation(ViewContext& context, ParallelCache& cache
                        .selection = {},
                        .lenses = {}};
     const auto result = cache.correlations.get(context, "correlations " + pane, query);
-    if (!result) return channels;
-    const auto size = static_cast<int>(channels.size());
-    std::vector<double> matrix(channels.size() * channels.size());
-    for (const volume::JointHistogram& joint : result->statistics.joint)
-        for (const auto& [a, b] : {std::pair{joint.x, joint.y}, std::pair{joint.y, joint.x}})
-            matrix[static_cast<std::size_t>(a * size + b)] = joint.correlation;
-    std::vector<int> out;
-    for (const int position : correlationOrder(matrix, size)) out.push_back(channels[std::size_t(position)]);
-    return out;
+    return result ? cache.order.of(result, channels) : channels;
 }
 
 /// The wheel zooms an axis about the mouse, the middle button moves it, its double click shows all again.

@@ -62,15 +62,27 @@ std::string worthPlace(const volume::DatasetInfo& info, glm::dvec3 place) {
     return text + (unit.name.empty() ? "" : " " + prettyUnit(unit.name));
 }
 
+/// Whether all steps are of one length: then the greatest change is the fastest.
+bool stepsAreEven(const std::vector<double>& times) {
+    double least = 1e300, most = 0;
+    for (std::size_t t = 1; t < times.size(); ++t) {
+        least = std::min(least, times[t] - times[t - 1]);
+        most = std::max(most, times[t] - times[t - 1]);
+    }
+    return most <= 1.01 * least;
+}
+
 std::string changeSentence(const Finding& of, const volume::DatasetInfo& info) {
     const auto when = [&](int time) { return timeValueText(info, info.times[std::size_t(time)]); };
     const std::string name = info.channel(of.x).name,
                       by = (of.number > 0 ? "+" : "") + worthValue(info, of.x, of.number);
     const std::string most = "between " + when(of.time - 1) + " and " + when(of.time);
+    const bool even = stepsAreEven(info.times);
     if (of.last - of.first == 1)
-        return name + " changes most " + most + ": " + by + worthPlace(info, of.place) + inRegion(info, of);
-    return name + " changes from " + when(of.first) + " to " + when(of.last) + ", most " + most + " (" + by +
-           "); it begins" + worthPlace(info, of.place) + inRegion(info, of);
+        return name + (even ? " changes most " : " changes more and faster than usual ") + most + ": " + by +
+               worthPlace(info, of.place) + inRegion(info, of);
+    return name + " changes from " + when(of.first) + " to " + when(of.last) + (even ? ", most " : ", fastest ") +
+           most + " (" + by + "); it begins" + worthPlace(info, of.place) + inRegion(info, of);
 }
 
 } // namespace
@@ -222,8 +234,18 @@ std::string searchedText(const volume::WorthFindings& answer, const WorthQuestio
     if (question.selected) text += "in " + question.selection + ", ";
     text += formatCount(answer.samples) + " samples";
     if (answer.level > 0) text += " (level " + std::to_string(answer.level) + ")";
+    if (answer.regionsLeft > 0)
+        text += ", without the " + formatCount(double(answer.regionsLeft)) + " smallest regions";
     return text + ", " + formatCount(double(answer.tests)) + " tests, false discovery rate " +
            formatShare(question.rate);
+}
+
+std::string searchedOrigin(const std::string& origin, const WorthQuestion& question, const volume::DatasetInfo& info,
+                           const std::string& axis) {
+    if (info.times.size() < 2 || question.list == WorthList::When) return origin;
+    const double time = info.times[std::size_t(question.time)];
+    const std::string quantities = quantitiesText(info, time, axis);
+    return origin + ", at " + timeText(info, time) + (quantities.empty() ? "" : " (" + quantities + ")");
 }
 
 } // namespace tessera::app

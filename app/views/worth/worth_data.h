@@ -46,5 +46,9 @@ Table worthTable(const volume::WorthFindings& answer, const WorthQuestion& quest
 /// "at t = 0.69 s, 14 443 samples, 167 tests, false discovery rate 5 %".
 std::string searchedText(const volume::WorthFindings& answer, const WorthQuestion& question,
                          const volume::DatasetInfo& info);
+/// "as computed, at t = 0.69 s (0.4 V)": where the numbers come from, and the stored time that was searched. `axis`:
+/// the quantity that comes first.
+std::string searchedOrigin(const std::string& origin, const WorthQuestion& question, const volume::DatasetInfo& info,
+                           const std::string& axis);
 
 } // namespace tessera::app

@@ -8,7 +8,7 @@
 #include "volume/bricks/brick_source.h"
 
 #include <algorithm>
-#include <memory>
+#include <cmath>
 
 namespace tessera::app {
 
@@ -65,7 +65,8 @@ void drawPicture(ImDrawList& draw, const volume::WorthPicture& picture, ImVec2 l
             return ImVec2{lo.x + step * (float(i) + 0.5f), hi.y - 1 - (height - 3) * picture.all[i]};
         };
         for (std::size_t i = 1; i < picture.all.size(); ++i)
-            draw.AddLine(at(i - 1), at(i), colors.bars, std::max(1.0f, em() * 0.1f));
+            if (!std::isnan(picture.all[i - 1]) && !std::isnan(picture.all[i])) // gaps where there is nothing
+                draw.AddLine(at(i - 1), at(i), colors.bars, std::max(1.0f, em() * 0.1f));
         if (std::size_t(picture.mark) < picture.all.size())
             draw.AddCircleFilled(at(std::size_t(picture.mark)), em() * 0.22f, colors.focus);
     } else {
@@ -136,7 +137,7 @@ void drawWorthSeeingView(ViewContext& context, const std::string& pane, WorthSee
     chooseList(tools, view);
     chooseChannels(tools, info, view.channels, shown);
     chooseSelected(tools, context.session, view);
-    const auto answer = cache.answers.get(
+    const auto found = cache.answers.answer(
         context, context.numbers,
         {.key = "worth " + pane,
          .title = "What is worth seeing",
@@ -148,27 +149,34 @@ void drawWorthSeeingView(ViewContext& context, const std::string& pane, WorthSee
         [](const WorthQuestion& a, const WorthQuestion& b) {
             return a.list == b.list && a.channels == b.channels && a.selection == b.selection;
         });
-    if (!answer) {
+    if (!found) {
         const std::string failure = cache.answers.failure();
         return failure.empty() ? ImGui::TextDisabled("Searching...") : drawHint("No list", failure.c_str());
     }
-    const auto table = std::make_shared<const Table>(worthTable(*answer, question, info));
-    exportMenu(context, tools,
-               {.name = "worth-seeing",
-                .figure = [table](const PageForm& form, const Progress&) { return tablePage(*table, form); },
-                .table = [table](const Progress&) { return *table; },
-                .brushed = !question.selection.empty()},
-               view.list != WorthList::When);
-    if (answer->missing.empty()) drawNote(tools, searchedText(*answer, question, info));
-    if (answer->found.empty()) return drawNothing(*answer, question);
-    std::size_t chosen = answer->found.size();
+    // An older answer is told with its own question, until the one to this question is there.
+    const WorthQuestion& searched = found->query;
+    const volume::WorthFindings& answer = found->result;
+    const auto table = [found, source = context.numbers] {
+        return worthTable(found->result, found->query, source->info());
+    };
+    // Exports state the brushes of the session: there is none while these are not yet searched.
+    if (searched.brushes == question.brushes)
+        exportMenu(context, tools,
+                   {.name = "worth-seeing",
+                    .figure = [table](const PageForm& form, const Progress&) { return tablePage(table(), form); },
+                    .table = [table](const Progress&) { return table(); },
+                    .brushed = !searched.selection.empty()},
+                   false, searchedOrigin(originText(context), searched, info, context.session.data.axis));
+    if (answer.missing.empty()) drawNote(tools, searchedText(answer, searched, info));
+    if (answer.found.empty()) return drawNothing(answer, searched);
+    std::size_t chosen = answer.found.size();
     ImGui::BeginChild("findings");
-    for (std::size_t i = 0; i < answer->found.size(); ++i)
-        if (drawRow(i + 1, answer->pictures[i], sentenceOf(answer->found[i], question, info),
-                    evidenceOf(answer->found[i]), context.takesInput()))
+    for (std::size_t i = 0; i < answer.found.size(); ++i)
+        if (drawRow(i + 1, answer.pictures[i], sentenceOf(answer.found[i], searched, info), evidenceOf(answer.found[i]),
+                    context.takesInput()))
             chosen = i;
     ImGui::EndChild();
-    if (chosen < answer->found.size()) openFinding(context.session, info, answer->found[chosen], question.time, pane);
+    if (chosen < answer.found.size()) openFinding(context.session, info, answer.found[chosen], searched.time, pane);
 }
 
 } // namespace tessera::app
