@@ -250,6 +250,7 @@ const std::map<std::string, Check>& checks() {
             {"Add volume layer", layerAdded<vis::VolumeLayer>},
             {"Add iso-surface layer", layerAdded<vis::IsoLayer>},
             {"Add slice layer", layerAdded<vis::SliceLayer>},
+            {"Add glyph layer", layerAdded<vis::GlyphLayer>},
             {"Add lens: cut away", lensAdded(vis::LensEffect::Replace)},
             {"Add lens: only this", lensAdded(vis::LensEffect::Only)},
             {"Add lens: enhance", lensAdded(vis::LensEffect::Enhance)},

@@ -102,7 +102,7 @@ constexpr Consumer kConsumers[] = {
     {"scatter3d",       "F F . . . F . . . . . F . . . . . . . . F"},
     {"hyperSlice",      "F F F . . . . . . . . . . . . . . . . . F"},
     {"hierarchy",       "F F . . . F . . . . . . . . . . . . . . F"},
-    {"worthSeeing",     "F . . . . . . . . . . . . . . F . . . . F"},
+    {"worthSeeing",     "F . . . . . . . . . . . . . . F . . . . ."},
     {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
 };
 // clang-format on

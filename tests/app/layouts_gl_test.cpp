@@ -139,7 +139,7 @@ const std::vector<Shipped>& shipped() {
         {"worlds",
          "data hierarchy history layers log statistics timeline transfer volume",
          kTemperature,
-         {{"volume", Warm, 0.05}, {"hierarchy", Orange, 0.02}, {"hierarchy", Cold, 0.05}}},
+         {{"volume", Warm, 0.0855}, {"hierarchy", Orange, 0.00493}, {"hierarchy", Cold, 0.0194}}},
         {"worthSeeing", "data layers slices timeline transfer volume whatElse when worthSeeing", kTemperature, {}},
     };
     return layouts;

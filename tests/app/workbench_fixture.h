@@ -5,16 +5,27 @@
 #include "app/workbench/workbench.h"
 #include "vis/gl/headless.h"
 
+#include <chrono>
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <string>
 
 namespace tessera::app {
 
-/// Draws until every job is done and nothing refines.
+/// Draws until every job is done and nothing refines. Fails where that takes minutes, and says what is not done.
 inline void settle(Workbench& workbench, OffscreenFrames& frames) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
     do {
         workbench.jobs().wait();
         frames.draw(workbench, 1);
+        if (std::chrono::steady_clock::now() < end) continue;
+        std::string left;
+        for (const Jobs::Status& job : workbench.jobs().list()) left += " job " + job.title;
+        if (workbench.panes().busy())
+            left += workbench.panes().hurries() ? " a pane that hurries" : " a pane that waits";
+        if (ImGui::IsAnyItemActive()) left += " while an item is held";
+        ADD_FAILURE() << "never done:" << left;
+        return;
     } while (workbench.busy());
     for (int i = 0; i < 4; ++i) frames.draw(workbench, 1);
 }
