@@ -172,7 +172,7 @@ TEST_F(SessionFileTest, BrushesOfEarlierSessionsLeaveTheirPicturesAsTheyWere) {
     EXPECT_EQ(least(R"({"schema": 4})"), vis::Selection().focusOpacity) << "brushes to come";
 }
 
-TEST(SessionFile, PathsOfEarlierVersionsKeepTheirSpeed) {
+TEST_F(SessionFileTest, PathsOfEarlierVersionsKeepTheirSpeed) {
     const auto layer = [](const std::string& schema, const std::string& kind) {
         const Session session =
             parseSession(R"({"schema": )" + schema +
