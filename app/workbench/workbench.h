@@ -134,7 +134,8 @@ private:
     void exportFigure(const std::string& path, std::function<VectorPage(const Progress&)> make);
 
     double now() const; ///< s
-    /// An item is held; a field of text only while keys are pressed in it, so that pictures are refined once these rest.
+    /// An item is held; a field of text only while keys are pressed in it, so that pictures are refined once these
+    /// rest.
     bool interacting();
     ViewContext viewContext();
     void pressKeys();
