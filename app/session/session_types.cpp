@@ -68,6 +68,7 @@ template const ValueType& valueType<vis::WarmCool>();
 template const ValueType& valueType<volume::DerivedParameter>();
 template const ValueType& valueType<volume::DifferenceRecipe>();
 template const ValueType& valueType<volume::ExpressionRecipe>();
+template const ValueType& valueType<volume::PiecesRecipe>();
 template const ValueType& valueType<volume::SmoothRecipe>();
 
 } // namespace tessera::app

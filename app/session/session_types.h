@@ -72,6 +72,7 @@ extern template const ValueType& valueType<vis::WarmCool>();
 extern template const ValueType& valueType<volume::DerivedParameter>();
 extern template const ValueType& valueType<volume::DifferenceRecipe>();
 extern template const ValueType& valueType<volume::ExpressionRecipe>();
+extern template const ValueType& valueType<volume::PiecesRecipe>();
 extern template const ValueType& valueType<volume::SmoothRecipe>();
 
 } // namespace tessera::app
