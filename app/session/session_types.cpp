@@ -18,6 +18,7 @@ template const ValueType& valueType<LayersView>();
 template const ValueType& valueType<LogView>();
 template const ValueType& valueType<ObliqueView>();
 template const ValueType& valueType<ParallelCoordinatesView>();
+template const ValueType& valueType<PiecesView>();
 template const ValueType& valueType<Probe>();
 template const ValueType& valueType<ProbesView>();
 template const ValueType& valueType<ProfileView>();

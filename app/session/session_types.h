@@ -22,6 +22,7 @@ extern template const ValueType& valueType<LayersView>();
 extern template const ValueType& valueType<LogView>();
 extern template const ValueType& valueType<ObliqueView>();
 extern template const ValueType& valueType<ParallelCoordinatesView>();
+extern template const ValueType& valueType<PiecesView>();
 extern template const ValueType& valueType<Probe>();
 extern template const ValueType& valueType<ProbesView>();
 extern template const ValueType& valueType<ProfileView>();

@@ -1,6 +1,7 @@
 #include "volume/pieces/piece_labels.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <unordered_map>
 #include <utility>
 
