@@ -18,6 +18,7 @@ template const ValueType& valueType<LayersView>();
 template const ValueType& valueType<LogView>();
 template const ValueType& valueType<ObliqueView>();
 template const ValueType& valueType<ParallelCoordinatesView>();
+template const ValueType& valueType<PiecesView>();
 template const ValueType& valueType<Probe>();
 template const ValueType& valueType<ProbesView>();
 template const ValueType& valueType<ProfileView>();
@@ -68,6 +69,7 @@ template const ValueType& valueType<vis::WarmCool>();
 template const ValueType& valueType<volume::DerivedParameter>();
 template const ValueType& valueType<volume::DifferenceRecipe>();
 template const ValueType& valueType<volume::ExpressionRecipe>();
+template const ValueType& valueType<volume::PiecesRecipe>();
 template const ValueType& valueType<volume::SmoothRecipe>();
 
 } // namespace tessera::app

@@ -22,6 +22,7 @@ extern template const ValueType& valueType<LayersView>();
 extern template const ValueType& valueType<LogView>();
 extern template const ValueType& valueType<ObliqueView>();
 extern template const ValueType& valueType<ParallelCoordinatesView>();
+extern template const ValueType& valueType<PiecesView>();
 extern template const ValueType& valueType<Probe>();
 extern template const ValueType& valueType<ProbesView>();
 extern template const ValueType& valueType<ProfileView>();
@@ -72,6 +73,7 @@ extern template const ValueType& valueType<vis::WarmCool>();
 extern template const ValueType& valueType<volume::DerivedParameter>();
 extern template const ValueType& valueType<volume::DifferenceRecipe>();
 extern template const ValueType& valueType<volume::ExpressionRecipe>();
+extern template const ValueType& valueType<volume::PiecesRecipe>();
 extern template const ValueType& valueType<volume::SmoothRecipe>();
 
 } // namespace tessera::app

@@ -115,6 +115,7 @@ const std::vector<Shipped>& shipped() {
          "data history layers log parallelCoordinates slices timeline transfer volume",
          kTemperature,
          {{"parallelCoordinates", Orange, 0.0136}}},
+        {"pieces", "data layers pieces slices timeline transfer volume", "gas 0.00 .. 1.00", {{"volume", Green, 0.01}}},
         {"shadowCube",
          "data layers shadowCube slices timeline transfer",
          kTemperature,
@@ -247,6 +248,7 @@ TEST_P(Layouts, AreDrawnWithoutOpenGl) {
     if (name == "parallel") panes.push_back("parallelCoordinates");
     if (name == "worlds") panes.push_back("hierarchy");
     if (name == "worthSeeing") panes.push_back("worthSeeing");
+    if (name == "pieces") panes.push_back("pieces");
     PictureMaker without({.openGl = false});
     for (const std::string& pane : panes) {
         if (!session().views.contains(pane)) continue;

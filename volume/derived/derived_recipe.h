@@ -2,6 +2,7 @@
 
 #include "volume/base/describe.h"
 #include "volume/derived/other_time.h"
+#include "volume/pieces/find_pieces.h"
 
 #include <string>
 #include <string_view>
@@ -13,7 +14,7 @@
 namespace tessera::volume {
 
 /// The unit that a derived parameter has at first.
-enum class DerivedUnit { OfInput, InputPerLength, Length, Time };
+enum class DerivedUnit { OfInput, InputPerLength, Length, Time, None };
 
 /// What is said of a way to compute parameters.
 struct DerivedKind {
@@ -23,6 +24,7 @@ struct DerivedKind {
     std::string_view prefix; ///< of the name at first, before that of its input
     int components = 1;      ///< 3: a vector, with magnitude
     DerivedUnit unit = DerivedUnit::OfInput;
+    bool categorical = false; ///< a label: whole numbers of regions, never mixed
     /// Whether the parameter between two stored times is that of both times mixed, where its inputs are.
     bool linear = true;
 };
@@ -195,8 +197,38 @@ struct DifferenceRecipe {
     TimeReference reference() const { return {from, time}; }
 };
 
+/// The number of the piece that a sample belongs to (volume/pieces/find_pieces.h), 0 in none: a label. Between stored
+/// times that of the nearer one.
+struct PiecesRecipe {
+    static constexpr std::string_view kType = "pieces";
+    static constexpr DerivedKind kKind{.title = "Pieces",
+                                       .doc = "The number of the connected piece above or below a value that a sample "
+                                              "belongs to, the same over time; 0 in none: a label.",
+                                       .words = "connected components blobs track label regions",
+                                       .prefix = "pieces of ",
+                                       .unit = DerivedUnit::None,
+                                       .categorical = true};
+    std::string channel;
+    double value = 0;
+    PieceSide side = PieceSide::Above;
+    double leastVolume = 0;
+    bool operator==(const PiecesRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, kDerivedFrom);
+        visit(self.value, FieldInfo{"value", "Value that samples of pieces reach, in the unit of the parameter"});
+        visit(self.side, FieldInfo{.key = "side",
+                                   .doc = "Pieces of what is at least the value (above), or at most (below)",
+                                   .names = kPieceSideNames});
+        visit(self.leastVolume,
+              FieldInfo{.key = "leastVolume",
+                        .doc = "Volume that a piece has when it is largest, in cubes of the unit of lengths; smaller "
+                               "ones are left out",
+                        .range = Range{0, 1e30}});
+    }
+};
+
 using DerivedRecipe = std::variant<ExpressionRecipe, MagnitudeRecipe, GradientRecipe, DivergenceRecipe, VorticityRecipe,
-                                   DeviationRecipe, SmoothRecipe, PositionRecipe, TimeRecipe, DifferenceRecipe>;
+                                   DeviationRecipe, SmoothRecipe, PositionRecipe, TimeRecipe, DifferenceRecipe, PiecesRecipe>;
 
 inline constexpr std::size_t kDerivedKinds = std::variant_size_v<DerivedRecipe>;
 

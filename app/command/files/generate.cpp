@@ -5,6 +5,7 @@
 #include "volume/base/byte_text.h"
 #include "volume/base/terminal.h"
 #include "volume/export/export.h"
+#include "volume/synthetic/bubbles.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
@@ -77,12 +78,15 @@ void listSettings(const std::string& model) {
     const volume::MarschnerLobbSettings signal;
     const volume::CastingSettings casting;
     const volume::MembraneSettings membrane;
+    const volume::BubblesSettings bubbles;
     if (model == "marschner-lobb")
         volume::MarschnerLobbSettings::describe(signal, PrintSetting());
     else if (model == "casting")
         volume::CastingSettings::describe(casting, PrintSetting());
     else if (model == "membrane")
         volume::MembraneSettings::describe(membrane, PrintSetting());
+    else if (model == "bubbles")
+        volume::BubblesSettings::describe(bubbles, PrintSetting());
     else
         volume::FuelCellSettings::describe(cell, PrintSetting());
 }
@@ -121,7 +125,8 @@ void addGenerateCommand(CLI::App& app) {
     command
         ->add_option("MODEL", request->model,
                      "fuel-cell, planted (the fuel cell with added events of known place), marschner-lobb, casting "
-                     "(a CT scan) or membrane (layers of known integrals, with uneven spacing)")
+                     "(a CT scan), membrane (layers of known integrals, with uneven spacing) or bubbles (which rise, merge "
+                     "and split at known times)")
         ->required()
         ->check(CLI::IsMember(volume::modelNames()));
     CLI::Option* output =
