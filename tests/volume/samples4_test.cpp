@@ -3,7 +3,9 @@
 #include "tests/volume/fields.h"
 #include "volume/sources/memory_source.h"
 
+#include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <set>
@@ -26,7 +28,7 @@ std::shared_ptr<const BrickSource> linearSource(LatticeKind kind) {
 TEST(Samples4, ReadsEverythingThatTheBudgetAllows) {
     for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {
         const auto source = linearSource(kind);
-        const Samples4 all = gatherSamples(*source, {{0, 1}, {0, 1, 2}, 1000000}, false);
+        const Samples4 all = gatherSamples(*source, {{0, 1}, {0, 1, 2}, 1000000}, 0);
         EXPECT_EQ(all.level, 0);
         EXPECT_EQ(all.skipped, 0);
         EXPECT_EQ(all.channels, 2);
@@ -46,10 +48,10 @@ TEST(Samples4, ReadsEverythingThatTheBudgetAllows) {
 TEST(Samples4, AFairPartWithinTheBudgetAlwaysTheSame) {
     const auto source = linearSource(LatticeKind::CC);
     const SamplesQuery query{{0}, {0, 1, 2}, 3000};
-    const Samples4 some = gatherSamples(*source, query, false);
+    const Samples4 some = gatherSamples(*source, query, 0);
     EXPECT_NEAR(double(some.count()), 3000 * 0.8, 200); // a fifth is absent
     EXPECT_EQ(some.level, 0);
-    const Samples4 again = gatherSamples(*source, query, false);
+    const Samples4 again = gatherSamples(*source, query, 0);
     EXPECT_EQ(again.positions, some.positions);
     EXPECT_EQ(again.values, some.values);
     // The first tenth is a fair sample too.
@@ -65,15 +67,98 @@ TEST(Samples4, AFairPartWithinTheBudgetAlwaysTheSame) {
 
 TEST(Samples4, CoarserLevelsForLessAndForAFirstPicture) {
     const auto source = linearSource(LatticeKind::BCC);
-    const Samples4 few = gatherSamples(*source, {{0}, {1}, 100}, false);
+    const Samples4 few = gatherSamples(*source, {{0}, {1}, 100}, 0);
     EXPECT_GT(few.level, 0);
     EXPECT_LE(few.count(), 130u);
-    const Samples4 first = gatherSamples(*source, {{0}, {0, 1, 2}, 100000}, true);
+    const Samples4 first = gatherSamples(*source, {{0}, {0, 1, 2}, 100000}, 1);
     EXPECT_EQ(first.level, source->grid().levels - 1);
     EXPECT_GT(first.count(), 20u);
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW(gatherSamples(*source, {{0}, {0}, 100}, false, Progress{{}, stop.get_token()}), Cancelled);
+    EXPECT_THROW(gatherSamples(*source, {{0}, {0}, 100}, 0, Progress{{}, stop.get_token()}), Cancelled);
+}
+
+TEST(Samples4, TheFirstStepIsSmallAndTheLastIsEverything) {
+    BrickGrid grid;
+    grid.lattice.size = glm::ivec3(512);
+    SamplesQuery query{{0, 1}, {}, 150000};
+    for (int t = 0; t < 100; ++t) query.times.push_back(t);
+    const int steps = coarseSteps(grid, query);
+    std::size_t before = 0;
+    for (int step = steps; step > 0; --step) {
+        const SampleStep own = sampleStep(grid, query, step);
+        EXPECT_EQ(own.level, grid.levels - 1);
+        EXPECT_EQ(own.times.front(), 0);
+        EXPECT_EQ(own.times.back(), 99);
+        const std::size_t reads = own.bricks * own.times.size() * 2;
+        if (step == steps) {
+            EXPECT_EQ(own.times.size(), 2u);
+            EXPECT_LE(reads, 128u);
+        }
+        EXPECT_GT(reads, before);
+        EXPECT_LE(reads, std::max<std::size_t>(130, 5 * before)) << "no step takes much longer than those before";
+        before = reads;
+    }
+    EXPECT_EQ(before, 100 * grid.brickCount() * 2) << "all there is at the coarsest level";
+    EXPECT_EQ(sampleStep(grid, query, 0).times.size(), 100u);
+    EXPECT_EQ(sampleStep(grid, query, 0).bricks, grid.brickCount());
+}
+
+TEST(Samples4, AFirstPictureHasTheSamplesThatItSays) {
+    const auto source = linearSource(LatticeKind::CC);
+    const BrickGrid& grid = source->grid();
+    const SamplesQuery query{{0}, {0, 1, 2}, 1000000};
+    const int steps = coarseSteps(grid, query);
+    const Samples4 first = gatherSamples(*source, query, steps);
+    const SampleStep read = sampleStep(grid, query, steps);
+    ASSERT_EQ(read.times, (std::vector<int>{0, 2}));
+    EXPECT_EQ(first.timesRead, 2);
+    std::size_t present = 0, all = 0;
+    for (const int time : read.times)
+        for (std::size_t b = 0; b < grid.brickCount(); ++b) {
+            const BrickSamples brick = source->read({0, time, grid.levels - 1, grid.indexOf(b)});
+            all += brick.values.size();
+            for (std::size_t i = 0; i < brick.values.size(); ++i) present += brick.isPresent(i) ? 1 : 0;
+        }
+    EXPECT_EQ(first.count(), present);
+    EXPECT_LT(present, all);
+    EXPECT_NEAR(first.share, double(all) / (24 * 20 * 16 * 3), 1e-12);
+    EXPECT_EQ(gatherSamples(*source, query).share, 1);
+    EXPECT_NEAR(gatherSamples(*source, {{0}, {0, 1, 2}, 2304}).share, 0.1, 1e-12);
+}
+
+TEST(Samples4, D4IsTheCheckerboardOfSpaceAndTime) {
+    const auto source = linearSource(LatticeKind::CC);
+    SamplesQuery query{{1}, {0, 1, 2}, 1000000};
+    const std::size_t whole = gatherSamples(*source, query).count();
+    query.lattice = SampleLattice::D4;
+    const Samples4 half = gatherSamples(*source, query);
+    EXPECT_EQ(2 * half.count(), whole);
+    EXPECT_NEAR(half.share, 0.5, 1e-12);
+    std::set<std::array<int, 4>> places;
+    for (std::size_t i = 0; i < half.count(); ++i) {
+        const glm::ivec3 at(glm::round(half.positions[i]));
+        const int time = int(std::lround(half.times[i]));
+        ASSERT_EQ((at.x + at.y + at.z + time) % 2, 0);
+        ASSERT_TRUE(places.insert({at.x, at.y, at.z, time}).second);
+        ASSERT_EQ(half.values[i], half.positions[i].z) << "values as they are stored";
+    }
+    const auto bcc = linearSource(LatticeKind::BCC);
+    EXPECT_EQ(gatherSamples(*bcc, query).count(), gatherSamples(*bcc, {{1}, {0, 1, 2}, 1000000}).count());
+}
+
+TEST(Samples4, GradientsOfALinearFieldAreItsSlopes) {
+    for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {
+        const auto source = linearSource(kind);
+        SamplesQuery query{{0}, {0, 1, 2}, 1000000};
+        query.gradients = true;
+        const Samples4 all = gatherSamples(*source, query);
+        ASSERT_EQ(all.gradients.size(), all.count());
+        for (std::size_t i = 0; i < all.count(); ++i) {
+            if (all.positions[i].x < 2 || all.positions[i].x > 21) continue; // where a BCC sample may lie outside
+            ASSERT_LT(glm::length(all.gradients[i] - glm::vec4(1, 0, 0, 100)), 1e-2) << i;
+        }
+    }
 }
 
 } // namespace
