@@ -199,7 +199,10 @@ Samples4 gatherSamples(const BrickSource& source, const SamplesQuery& query, int
     const BrickGrid& grid = source.grid();
     const SampleStep read = sampleStep(grid, query, step);
     const std::vector<std::size_t> bricks = bricksOfStep(grid.brickCount(), read.bricks);
-    const bool checkered = query.lattice == SampleLattice::D4 && grid.lattice.kind == LatticeKind::CC;
+    const bool half = query.lattice == SampleLattice::D4, bcc = grid.lattice.kind == LatticeKind::BCC;
+    const auto isOfD4 = [&](glm::ivec3 place, int time) {
+        return ((bcc ? place.z : place.x + place.y + place.z) + time) % 2 == 0;
+    };
     Samples4 all;
     all.channels = int(query.channels.size());
     all.level = read.level;
@@ -207,7 +210,7 @@ Samples4 gatherSamples(const BrickSource& source, const SamplesQuery& query, int
     double chosen = 0; // of one time
     for (const std::size_t b : bricks) {
         const glm::dvec3 size(grid.brickSamples(grid.indexOf(b), read.level));
-        chosen += size.x * size.y * size.z * (checkered ? 0.5 : 1.0);
+        chosen += size.x * size.y * size.z * (half ? 0.5 : 1.0);
     }
     chosen *= double(read.times.size());
     const double keep = std::min(1.0, double(query.budget) / std::max(chosen, 1.0));
@@ -235,7 +238,7 @@ Samples4 gatherSamples(const BrickSource& source, const SamplesQuery& query, int
             for (std::size_t i = 0; i < count; ++i, positions.next()) {
                 const std::uint32_t hash = mixed(++number * 0x9e3779b97f4a7c15ull);
                 const glm::ivec3 place = positions.index();
-                if (checkered && ((place.x + place.y + place.z + int(t)) & 1) != 0) continue;
+                if (half && !isOfD4(place, read.times[t])) continue;
                 const bool present = samples.front().isPresent(i);
                 if (!present || hash > threshold || std::isnan(samples.front().values[i])) continue;
                 order.push_back(hash);

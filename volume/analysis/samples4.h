@@ -32,7 +32,7 @@ struct Samples4 {
 /// Which samples stand for the data.
 enum class SampleLattice {
     Stored, ///< those of the data: CC in four dimensions, or BCC in space
-    D4      ///< of a grid those whose indices in space and time have an even sum: half of them
+    D4      ///< half of them: of a grid those whose indices have an even sum, of BCC one sublattice at each time
 };
 inline constexpr std::string_view kSampleLatticeNames[] = {"stored", "d4"};
 
@@ -64,9 +64,10 @@ int coarseSteps(const BrickGrid& grid, const SamplesQuery& query);
 /// chosen by a hash of their position (equal queries give equal results), in an order of which every prefix is a fair
 /// sample.
 ///
-/// SampleLattice::D4 on a grid: the checkerboard of four dimensions, which is D4 and, but for a turn and a scale, D4*,
-/// the densest packing and the best sampling lattice of four dimensions (Conway and Sloane 1999, chapter 4; Röber
-/// 2002). On BCC every stored sample. Throws Error, Cancelled.
+/// SampleLattice::D4: of a grid the samples whose indices along x, y, z and time have an even sum, the checkerboard of
+/// four dimensions, which but for a turn and a scale is D4* (Conway and Sloane 1999, chapter 4.7). Of BCC the even
+/// sublattice at even times and the odd one at odd times, which is D4* (volume/field/lattice4.h): of an archive on D4*
+/// these are the samples that it stores. Throws Error, Cancelled.
 Samples4 gatherSamples(const BrickSource& source, const SamplesQuery& query, int step = 0,
                        const Progress& progress = {});
 

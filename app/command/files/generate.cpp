@@ -5,6 +5,7 @@
 #include "volume/base/byte_text.h"
 #include "volume/base/terminal.h"
 #include "volume/export/export.h"
+#include "volume/synthetic/branching.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
@@ -81,6 +82,8 @@ void listSettings(const std::string& model) {
         volume::MarschnerLobbSettings::describe(signal, PrintSetting());
     else if (model == "casting")
         volume::CastingSettings::describe(casting, PrintSetting());
+    else if (model == "branching-pulse")
+        volume::BranchingSettings::describe(volume::BranchingSettings(), PrintSetting());
     else if (model == "membrane")
         volume::MembraneSettings::describe(membrane, PrintSetting());
     else
@@ -121,7 +124,8 @@ void addGenerateCommand(CLI::App& app) {
     command
         ->add_option("MODEL", request->model,
                      "fuel-cell, planted (the fuel cell with added events of known place), marschner-lobb, casting "
-                     "(a CT scan) or membrane (layers of known integrals, with uneven spacing)")
+                     "(a CT scan), membrane (layers of known integrals, with uneven spacing) or branching-pulse (a pulse that "
+                     "moves through a pipe and parts into two)")
         ->required()
         ->check(CLI::IsMember(volume::modelNames()));
     CLI::Option* output =

@@ -252,8 +252,8 @@ struct TesseractView {
                                      .range = Range{1000, 2000000},
                                      .logScale = true});
         visit(self.samples, FieldInfo{.key = "samples",
-                                      .doc = "Samples drawn: as they are stored, or of a grid only the half that forms "
-                                             "a D4* lattice in space and time",
+                                      .doc = "Samples drawn: all of each time, or only the half that forms a D4* "
+                                             "lattice in space and time",
                                       .names = volume::kSampleLatticeNames});
         visit(self.cube, FieldInfo{"cube", "Draw all axes equally long; else in the proportions of the 3D view"});
         visit(self.showWire, FieldInfo{"wire", "Draw the edges of the tesseract"});

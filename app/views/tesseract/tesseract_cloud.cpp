@@ -114,7 +114,8 @@ std::string cloudText(const TesseractCloud& cloud, const volume::DatasetInfo& in
         text += ", " + formatCount(samples.timesRead) + " of " + formatCount(double(info.times.size())) + " times";
     const bool grid = info.lattice.kind == volume::LatticeKind::CC;
     if (view.samples == volume::SampleLattice::D4)
-        text += grid ? "; a D4* lattice: every other sample in space and time" : "; BCC: as stored";
+        text += grid ? "; a D4* lattice: every other sample in space and time"
+                     : "; a D4* lattice: one grid of two at each time";
     return moreComing ? text + "; more are being read" : text;
 }
 
