@@ -3,6 +3,7 @@
 #include "app/tools/profile_line.h"
 #include "app/views/curves/profile_data.h"
 #include "app/views/shadow_cube/wall_projection.h"
+#include "app/views/tesseract/tesseract_turn.h"
 #include "codec/pack/pack.h"
 #include "vis/shapes/projection4.h"
 #include "volume/base/error.h"
@@ -373,26 +374,17 @@ TEST(Scenarios, ThePulseBeginsAtItsPlantedTime) {
 TEST(Scenarios, TheTesseractTurnsAndTurnsBack) {
     const Recorded task = recorded("tesseract");
     const auto angles = [](const Session& session) {
-        std::vector<double> out(6);
         for (const auto& [pane, view] : session.views)
-            if (const auto* tesseract = std::get_if<TesseractView>(&view))
-                for (int i = 0; i < 3; ++i) {
-                    out[std::size_t(i)] = double(tesseract->turn[i]);
-                    out[std::size_t(i) + 3] = double(tesseract->turn4[i]);
-                }
-        return out;
-    };
-    const auto expectIdentity = [](const vis::RotationN& product) {
-        for (int row = 0; row < vis::kMostAxes; ++row)
-            for (int column = 0; column < vis::kMostAxes; ++column)
-                EXPECT_NEAR(product.at(row, column), row == column ? 1 : 0, 1e-12);
+            if (const auto* tesseract = std::get_if<TesseractView>(&view)) return anglesOf(*tesseract, 4);
+        return std::vector<double>(6);
     };
     std::vector<double> farthest(6);
     for (const Session& step : task.steps) {
         const std::vector<double> now = angles(step), start = angles(task.steps.front());
         for (std::size_t i = 0; i < 6; ++i) farthest[i] = std::max(farthest[i], std::abs(now[i] - start[i]));
         const vis::RotationN rotation = vis::rotationOf(now);
-        expectIdentity(rotation * rotation.inverse());
+        const vis::RotationN product = rotation * rotation.inverse();
+        for (int i = 0; i < 64; ++i) EXPECT_NEAR(product.at(i / 8, i % 8), i / 8 == i % 8 ? 1 : 0, 1e-12);
         for (int corner = 0; corner < 16; ++corner) {
             const vis::PointN at = rotation * vis::cornerOf(corner, {1, 1, 1, 1}, 4);
             EXPECT_LE(glm::length(vis::project({}, 2, vis::firstFour(at)).at), 1.0 + 1e-9) << "no blow-up at any angle";

@@ -10,8 +10,8 @@
 /// speeds: test data for pictures of space and time, in which every answer is known.
 namespace tessera::volume {
 
-/// Lengths in m, times in s. The pipe runs along +x in the middle of the box to the branching, then to both sides in the
-/// plane of x and y.
+/// Lengths in m, times in s. The pipe runs along +x in the middle of the box to the branching, then to both sides in
+/// the plane of x and y.
 struct Branching {
     static constexpr glm::dvec3 kBox{0.2, 0.12, 0.06}; ///< from the origin
     static constexpr double kBranchAt = 0.08;          ///< x of the branching

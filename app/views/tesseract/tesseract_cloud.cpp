@@ -2,6 +2,7 @@
 
 #include "app/pane/axis_label.h"
 #include "app/pane/view_parts.h"
+#include "app/queries/readout.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 
@@ -117,6 +118,27 @@ std::string cloudText(const TesseractCloud& cloud, const volume::DatasetInfo& in
         text += grid ? "; a D4* lattice: every other sample in space and time"
                      : "; a D4* lattice: one grid of two at each time";
     return moreComing ? text + "; more are being read" : text;
+}
+
+void drawCursorRing(ViewContext& context, const TesseractFrame& frame) {
+    const glm::dvec3 sheet = context.source->info().lattice.axes.toSheet(context.session.cursor);
+    vis::PointN at{};
+    for (std::size_t axis = 0; axis < frame.axes.size(); ++axis) {
+        const TesseractAxis& own = frame.axes[axis];
+        std::optional<double> value = context.session.time;
+        if (axis < 3)
+            value = sheet[int(axis)];
+        else if (own.channel)
+            value = sharedReadout(context).value(own.name);
+        if (!value || std::isnan(*value)) return;
+        const double extent = own.range.hi - own.range.lo;
+        const double share = extent > 0 ? std::clamp((*value - own.range.lo) / extent, 0.0, 1.0) : 0.5;
+        at[axis] = frame.half[axis] * (2 * share - 1);
+    }
+    const ImVec2 pixel = frame.pixel(frame.project(at).at);
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    draw.AddCircle(pixel, em() * 0.28f, plotColors().backdrop, 16, 3);
+    draw.AddCircle(pixel, em() * 0.28f, plotColors().cursor, 16, 1.5f);
 }
 
 std::optional<std::size_t> drawReading(ViewContext& context, const TesseractCloud& cloud, const TesseractFrame& frame,

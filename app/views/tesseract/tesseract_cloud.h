@@ -34,6 +34,10 @@ struct TesseractCloud {
 std::string cloudText(const TesseractCloud& cloud, const volume::DatasetInfo& info, const TesseractView& view,
                       std::size_t drawn, bool moreComing);
 
+/// A ring at the cross-hair and the time shown, with the values there along axes of parameters; nothing where one of
+/// them is absent.
+void drawCursorRing(ViewContext& context, const TesseractFrame& frame);
+
 /// The value, place and time of the point under the mouse, beside it; returns its sample, nothing where there is none.
 std::optional<std::size_t> drawReading(ViewContext& context, const TesseractCloud& cloud, const TesseractFrame& frame,
                                        int channel);

@@ -127,12 +127,13 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
 }
 
 /// Lines over the points; returns the corners of their texts.
-std::vector<std::pair<ImVec2, ImVec2>> drawLines(const ViewContext& context, const TesseractView& view,
+std::vector<std::pair<ImVec2, ImVec2>> drawLines(ViewContext& context, const TesseractView& view,
                                                  const TesseractFrame& frame) {
     const volume::DatasetInfo& info = context.source->info();
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     drawLattice4(draw, frame, view.lattice);
     if (view.showWire && context.decoration.box) drawWire(draw, frame);
+    if (context.decoration.cursor) drawCursorRing(context, frame);
     std::vector<std::pair<ImVec2, ImVec2>> taken;
     if (view.showNow && context.decoration.cursor && !frame.axes[3].channel && info.times.size() > 1) {
         const double first = info.times.front(), now = context.session.time - first;
