@@ -106,10 +106,9 @@ TEST(RotationN, AnglesGiveTheRotationBack) {
             for (const double angle : angles) EXPECT_LE(std::abs(angle), 180.0 + 1e-9);
         }
     // Where axes coincide many sets of angles are right; any will do.
-    for (const std::vector<double>& start : {std::vector<double>{0, 0, 0, 90, 0, 0},
-                                             {10, 90, 20, 0, 90, 30},
-                                             {0, 0, 0, 0, 0, 180},
-                                             {5, -90, 0, -90, 90, 90}})
+    const std::vector<std::vector<double>> coinciding{
+        {0, 0, 0, 90, 0, 0}, {10, 90, 20, 0, 90, 30}, {0, 0, 0, 0, 0, 180}, {5, -90, 0, -90, 90, 90}};
+    for (const std::vector<double>& start : coinciding)
         EXPECT_LT(difference(rotationOf(anglesOf(rotationOf(start), 4)), rotationOf(start)), 1e-9);
 }
 

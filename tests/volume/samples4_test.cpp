@@ -104,27 +104,46 @@ TEST(Samples4, TheFirstStepIsSmallAndTheLastIsEverything) {
     EXPECT_EQ(sampleStep(grid, query, 0).bricks, grid.brickCount());
 }
 
+std::shared_ptr<const BrickSource> wholeSource(glm::ivec3 size, int times, int brickSize) {
+    std::vector<Field> fields;
+    for (int t = 0; t < times; ++t)
+        fields.push_back(test::sampled<float>(test::ccLattice(size), [&](glm::dvec3 at) { return at.x + t; }));
+    return makeMemorySource(test::datasetOf(fields, times), {.brickSize = brickSize});
+}
+
 TEST(Samples4, AFirstPictureHasTheSamplesThatItSays) {
-    const auto source = linearSource(LatticeKind::CC);
-    const BrickGrid& grid = source->grid();
+    // 120 bricks at three times, of which 128 are read at first: half of two times.
+    const auto source = wholeSource({24, 20, 16}, 3, 4);
     const SamplesQuery query{{0}, {0, 1, 2}, 1000000};
-    const int steps = coarseSteps(grid, query);
-    const Samples4 first = gatherSamples(*source, query, steps);
-    const SampleStep read = sampleStep(grid, query, steps);
-    ASSERT_EQ(read.times, (std::vector<int>{0, 2}));
+    ASSERT_EQ(source->grid().brickCount(), 120u);
+    ASSERT_EQ(coarseSteps(source->grid(), query), 2);
+    const SampleStep read = sampleStep(source->grid(), query, 2);
+    EXPECT_EQ(read.times, (std::vector<int>{0, 2}));
+    EXPECT_EQ(read.bricks, 64u);
+    const Samples4 first = gatherSamples(*source, query, 2);
+    EXPECT_EQ(first.count(), 128u * 64) << "all samples of these bricks";
     EXPECT_EQ(first.timesRead, 2);
-    std::size_t present = 0, all = 0;
-    for (const int time : read.times)
-        for (std::size_t b = 0; b < grid.brickCount(); ++b) {
-            const BrickSamples brick = source->read({0, time, grid.levels - 1, grid.indexOf(b)});
-            all += brick.values.size();
-            for (std::size_t i = 0; i < brick.values.size(); ++i) present += brick.isPresent(i) ? 1 : 0;
-        }
-    EXPECT_EQ(first.count(), present);
-    EXPECT_LT(present, all);
-    EXPECT_NEAR(first.share, double(all) / (24 * 20 * 16 * 3), 1e-12);
+    EXPECT_NEAR(first.share, 128.0 * 64 / (24 * 20 * 16 * 3), 1e-12);
+    std::set<std::array<float, 4>> places;
+    for (std::size_t i = 0; i < first.count(); ++i) {
+        const glm::vec3 at = first.positions[i];
+        EXPECT_TRUE(places.insert({at.x, at.y, at.z, first.times[i]}).second);
+        EXPECT_NE(first.times[i], 1);
+    }
+    EXPECT_EQ(gatherSamples(*source, query, 1).count(), 24u * 20 * 16 * 3);
     EXPECT_EQ(gatherSamples(*source, query).share, 1);
     EXPECT_NEAR(gatherSamples(*source, {{0}, {0, 1, 2}, 2304}).share, 0.1, 1e-12);
+}
+
+TEST(Samples4, AFirstPictureOfALongSeriesIsOfTheCoarsestLevel) {
+    const auto source = wholeSource({24, 24, 16}, 10, 8); // 18 bricks at ten times: all bricks of seven of these
+    SamplesQuery query{{0}, {}, 1000000};
+    for (int t = 0; t < 10; ++t) query.times.push_back(t);
+    const Samples4 first = gatherSamples(*source, query, coarseSteps(source->grid(), query));
+    EXPECT_EQ(first.level, 1);
+    EXPECT_EQ(first.timesRead, 7);
+    EXPECT_EQ(first.count(), 7u * 12 * 12 * 8);
+    EXPECT_NEAR(first.share, 7.0 / 10 / 8, 1e-12);
 }
 
 TEST(Samples4, D4IsTheCheckerboardOfSpaceAndTime) {

@@ -170,8 +170,7 @@ int coarseSteps(const BrickGrid& grid, const SamplesQuery& query) {
     const double times = double(query.times.size());
     const double reads = times * double(grid.brickCount()) * double(std::max<std::size_t>(query.channels.size(), 1));
     int steps = 1;
-    for (double bricks = kFirstBricks, shown = kFirstTimes; bricks < reads || shown < times; ++steps)
-        bricks *= kRefined, shown *= kRefined;
+    for (double bricks = kFirstBricks; bricks < reads; ++steps) bricks *= kRefined;
     return steps;
 }
 
