@@ -29,6 +29,7 @@ std::shared_ptr<const volume::Samples4> AsyncSamples::get(ViewContext& context, 
         },
         [](const TesseractQuery& former, const TesseractQuery& now) { return former.resembles(now); });
     if (found && (found->level == 0 || !shown || last_->level > 0)) last_ = found;
+    exact_ = last_ && last_->level == 0 && last_->query == query;
     if (!last_ || !last_->query.resembles(query)) return nullptr;
     return {last_, &last_->result};
 }

@@ -32,15 +32,16 @@ public:
     /// end.
     std::shared_ptr<const volume::Samples4> get(ViewContext& context, const std::string& jobKey,
                                                 const TesseractQuery& query);
-    /// Whether the samples that get() returned last are those that the budget allows; else better ones are to come,
+    /// Whether the samples that get() returned last are those that the query asked for; else better ones are to come,
     /// unless reading failed.
-    bool exact() const { return last_ && last_->level == 0; }
+    bool exact() const { return exact_; }
     /// Why the last query failed (damaged data), "" if it did not.
     std::string failure() const { return query_.failure(); }
 
 private:
     Query query_{{.answers = 1}};
     Query::AnswerPointer last_;
+    bool exact_ = false;
 };
 
 } // namespace tessera::app
