@@ -103,17 +103,17 @@ TEST_F(DrawnShapes, CornersOfATesseractAreColouredByTheFourthAxis) {
         return toColor({c.r, c.g, c.b}) & ~IM_COL32_A_MASK;
     };
     int seen = 0;
-    for (int i = 0; i < vis::kCorners4; ++i) {
-        const glm::dvec4 corner = vis::corner4(i, frame.half);
+    for (int i = 0; i < 16; ++i) {
+        const vis::PointN corner = vis::cornerOf(i, frame.half, 4);
         const ImVec2 at = frame.pixel(frame.project(corner).at);
         bool alone = true; // no other corner of the picture at the same place
-        for (int j = 0; j < vis::kCorners4; ++j) {
-            const ImVec2 other = frame.pixel(frame.project(vis::corner4(j, frame.half)).at);
+        for (int j = 0; j < 16; ++j) {
+            const ImVec2 other = frame.pixel(frame.project(vis::cornerOf(j, frame.half, 4)).at);
             if (j != i && std::hypot(other.x - at.x, other.y - at.y) < 12) alone = false;
         }
         if (!alone) continue;
         ++seen;
-        EXPECT_EQ(nearest(at), end(corner.w > 0 ? 1 : 0)) << i;
+        EXPECT_EQ(nearest(at), end(corner[3] > 0 ? 1 : 0)) << i;
     }
     EXPECT_GE(seen, 4);
 }

@@ -46,6 +46,7 @@ const std::vector<Shipped>& shipped() {
          "data layers slices timeline transfer volume",
          "O2 [mol/m³] = 2.5; T [K] 353.17 .. 356.60",
          {{"volume", Orange, 0.0588}, {"volume", Cold, 0.0292}, {"slices", Green, 0.0381}}},
+        {"branchingPulse", "data layers tesseract timeline transfer volume", "tracer [mol/m³] 0.00 .. 8.00", {}},
         {"charcoal",
          "data layers timeline transfer volume",
          "",
@@ -181,6 +182,8 @@ protected:
         std::map<std::string, double>& settings = request.data->settings;
         if (request.data->model == "marschner-lobb")
             settings["nx"] = settings["ny"] = settings["nz"] = 24;
+        else if (request.data->model == "branching-pulse")
+            settings = {{"nx", 36}, {"ny", 22}, {"nz", 11}, {"times", 20}};
         else
             settings = {{"nx", 7}, {"ny", 13}, {"nz", 40}};
         opened = open(request);
