@@ -324,9 +324,10 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
 Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
                    std::vector<std::string>& messages, const Progress& progress) {
     std::shared_ptr<const volume::BrickSource> numbers;
+    const auto bounded = withBounds(wanted, sources.origin, sources.numbers->info());
     return changed(sources, [&](const std::shared_ptr<const volume::BrickSource>& source) {
-        if (numbers) return volume::deriveLike(*numbers, source, wanted);
-        return numbers = volume::deriveAll(source, wanted, messages, progress); // they come first
+        if (numbers) return volume::deriveLike(*numbers, source, bounded);
+        return numbers = volume::deriveAll(source, bounded, messages, progress); // they come first
     });
 }
 

@@ -120,7 +120,7 @@ BrushedQuery brushedQuery(const Session& session, const volume::DatasetInfo& inf
         query.selection.brushes.push_back(std::move(brush));
     }
     const bool marked = std::any_of(session.lenses.begin(), session.lenses.end(),
-                                    [](const vis::Lens& lens) { return lens.enabled && lens.marks; });
+                                    [&](const vis::Lens& lens) { return vis::marksAt(lens, session.time); });
     // Enabled brushes take precedence, so that the selection is the same in plots, tables and volumes.
     if (marked && query.selection.brushes.empty())
         query.selection.brushes.push_back({.name = "", .color = {}, .region = vis::LensRegion{}});

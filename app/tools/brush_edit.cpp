@@ -267,7 +267,7 @@ ImU32 focusColor(const Session& session) {
             colors.push_back(brush.color);
     if (!session.selection.active())
         for (const vis::Lens& lens : session.lenses)
-            if (lens.enabled && lens.marks) colors.push_back(lens.color);
+            if (vis::marksAt(lens, session.time)) colors.push_back(lens.color);
     return colors.size() == 1 ? brushColor(colors.front()) : plotColors().focus;
 }
 

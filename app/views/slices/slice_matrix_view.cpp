@@ -240,7 +240,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     const bool scrolled = wide > room.x && context.takesInput();
     if (scrolled) {
         ImGui::SetNextWindowContentSize({wide, 0});
-        ImGui::BeginChild("cells", {0, 0}, ImGuiChildFlags_None, ImGuiWindowFlags_HorizontalScrollbar);
+        ImGui::BeginChild("cells", {0, 0}, false, ImGuiWindowFlags_HorizontalScrollbar);
     }
     const MatrixLayout layout = layOut(context, view, matrix, world, {scrolled ? least.x : 1, least.y});
     drawCells(context, cache, layout, matrix, world);
