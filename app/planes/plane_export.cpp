@@ -21,7 +21,6 @@ namespace {
 
 constexpr int kPageCells = 96, kMostCells = 512; ///< along an edge of a picture
 constexpr double kCellsPerPoint = 2;             ///< where the size of the page is given
-constexpr float kOnWhite = 0.7f;                 ///< of light colours, which vanish on white
 constexpr glm::vec4 kEdgeOnLight{0.267f, 0.267f, 0.267f, 1}, kEdgeOnDark{0.733f, 0.733f, 0.733f, 1};
 
 /// Places of uneven axes come from their sheet, which leaves the last digits of their ends open.
@@ -107,7 +106,7 @@ void addOutlines(Plot& plot, const PlanePicture& picture, bool dark) {
     for (const PlaneSection& section : picture.sections) {
         PlotOutline& outline = plot.outlines.emplace_back();
         for (const glm::dvec2& point : section.outline) outline.points.push_back(point * perUnit);
-        outline.color = glm::vec4(section.color * (dark ? 1 : kOnWhite), section.faint ? 0.35f : 1.0f);
+        outline.color = glm::vec4(section.color * (dark ? 1 : kBrightOnWhite), section.faint ? 0.35f : 1.0f);
         outline.dashed = section.dashed;
         if (section.middle) outline.dot = *section.middle * perUnit;
     }
