@@ -228,7 +228,7 @@ Table planesTable(const volume::BrickSource& source, const std::vector<PlanePict
     };
     if (std::ranges::any_of(planes, [](const PlanePicture* picture) { return picture->ownTime.has_value(); }))
         table.columns.push_back(
-            {.name = timeWord(source.info()), .unit = source.info().timeUnit, .numbers = std::move(columns.times)});
+            {.name = source.info().timeName, .unit = source.info().timeUnit, .numbers = std::move(columns.times)});
     if (!std::ranges::all_of(planes, parallel)) // of parallel ones the position tells which it is
         table.columns.push_back({.name = "plane", .texts = std::move(columns.planes)});
     for (const PlanePicture* picture : planes) {
