@@ -283,7 +283,7 @@ TEST(WallScene, HasLensesContoursAndALookWhereAFaceAsksForThem) {
     const vis::Scene means = wall({.kind = WallKind::Mean, .lenses = true});
     EXPECT_EQ(means.transfer.at("O2").opacity, means.transfer.at("T").opacity) << "means are opaque";
     vis::Look look;
-    look.charcoal = true;
+    look.charcoal.emplace();
     const vis::Scene volume = wall({.kind = WallKind::Volume, .look = look});
     EXPECT_EQ(std::get<vis::VolumeLayer>(volume.layers[0].technique).look, look);
     EXPECT_EQ(std::get<vis::VolumeLayer>(volume.layers[0].technique).style, vis::RayStyle::Composite);
