@@ -24,7 +24,7 @@ struct NumberOrigin {
     bool mesh = false;      ///< resampled from cells that are no regular grid
     bool stored = false;    ///< read from an archive, or from data packed as one
     bool originals = false; ///< parameters called "... as computed" are what the others were before they were packed
-    std::string lattice;    ///< of the stored samples: "CC", "BCC", "D4*" or "one grid of D4*"
+    std::string lattice;    ///< of the stored samples: "CC", "BCC", "D4*", "one grid of D4*" or "one grid of BCC"
     bool exact = true;      ///< every stored sample is what was packed
     double maxError = 0;    ///< else: bound on the error of a sample, relative to the largest range of its components
     double absError = 0;    ///< in the unit of the parameter; 0 = no such bound
