@@ -263,6 +263,11 @@ const std::map<std::string, Check>& checks() {
                  lensAdded(vis::LensEffect::Replace)(before, after);
                  EXPECT_EQ(after.layers.back().lens, after.lenses.back().name);
              }},
+            {"Lens: what is brushed",
+             [](const Session& before, const Session& after) {
+                 lensAdded(vis::LensEffect::Replace)(before, after);
+                 EXPECT_EQ(after.lenses.back().shape, vis::LensShape::Selection);
+             }},
             {"Brush inside the lens",
              [](const Session& before, const Session& after) {
                  ASSERT_EQ(after.selection.brushes.size(), before.selection.brushes.size() + 1);
@@ -329,6 +334,7 @@ const std::map<std::string, Check>& checks() {
             {"Add derived parameter: gradient", derivedAdded("grad rho")},
             {"Add derived parameter: deviation over time", derivedAdded("deviation rho")},
             {"Add derived parameter: smoothed", derivedAdded("smooth rho")},
+            {"Add derived parameter: uncertainty of packing", derivedAdded("uncertainty rho")},
             {"Add derived parameter: position", derivedAdded("position")},
             {"Add derived parameter: time", derivedAdded("time")},
             {"Maximise pane", [](const Session& before,
