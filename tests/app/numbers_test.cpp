@@ -513,5 +513,43 @@ TEST(Numbers, OneGridOfABodyCentredArchiveIsReadAsStored) {
     std::filesystem::remove_all(folder);
 }
 
+TEST(Numbers, TheUncertaintyOfAnArchiveBoundsWhatPackingChanged) {
+    const std::string folder =
+        (std::filesystem::temp_directory_path() / "tessera_uncertainty_").string() + std::to_string(::getpid());
+    std::filesystem::create_directories(folder);
+    const std::string path = folder + "/bounded.tsr";
+    const volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 24}});
+    const auto computed = volume::makeMemorySource(cell, {});
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
+        codec::pack(cell, packing(lattice, 0.01), path);
+        DataRef data = dataOf({path}, {});
+        data.derived = {{"u", "K", volume::UncertaintyRecipe{"T"}}};
+        const Sources sources = opened(data);
+        const volume::DatasetInfo& info = sources.numbers->info();
+        const int t = info.findChannel("T").value(), u = info.findChannel("u").value();
+        const auto bound = packingBound(sources.origin, info, info.channel(t));
+        ASSERT_TRUE(bound && bound->most > 0);
+        EXPECT_EQ(bound->measured, lattice == StoredLattice::BCC) << "its corrections lead back to the source";
+        double worst = 0;
+        const glm::ivec3 size = cell.info.lattice.size;
+        for (int z = 0; z < size.z; ++z)
+            for (int y = 0; y < size.y; ++y)
+                for (int x = 0; x < size.x; x += 2) {
+                    const glm::dvec3 at = cell.info.lattice.position({x, y, z});
+                    const auto was = volume::probeChannel(*computed, computed->info().findChannel("T").value(), at, 0);
+                    const auto is = volume::probeChannel(*sources.numbers, t, at, 0);
+                    const auto stated = volume::probeChannel(*sources.numbers, u, at, 0);
+                    ASSERT_EQ(was.nearest.has_value(), is.nearest.has_value());
+                    ASSERT_EQ(stated.nearest.has_value(), is.nearest.has_value());
+                    if (!is.nearest) continue;
+                    EXPECT_EQ(*stated.nearest, double(float(bound->most)));
+                    worst = std::max(worst, std::abs(*was.nearest - *is.nearest));
+                }
+        EXPECT_GT(worst, 0) << "something was lost";
+        EXPECT_LE(worst, bound->most * (1 + 1e-6));
+    }
+    std::filesystem::remove_all(folder);
+}
+
 } // namespace
 } // namespace tessera::app
