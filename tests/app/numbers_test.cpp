@@ -519,7 +519,7 @@ TEST(Numbers, TheUncertaintyOfAnArchiveBoundsWhatPackingChanged) {
     std::filesystem::create_directories(folder);
     const std::string path = folder + "/bounded.tsr";
     const volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 24}});
-    const auto computed = volume::makeMemorySource(cell, {});
+    const auto computed = volume::makeMemorySource(cell, {.lattice = volume::LatticeKind::CC, .budget = 1 << 28});
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
         codec::pack(cell, packing(lattice, 0.01), path);
         DataRef data = dataOf({path}, {});
