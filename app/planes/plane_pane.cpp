@@ -41,6 +41,7 @@ vis::Scene planeScene(const ViewContext& context, const PlanePicture& picture, c
     vis::Scene scene = sceneWithLimits(context);
     scene.paper.reset();
     scene.showBox = false;
+    if (picture.ownTime) scene.time = *picture.ownTime;
     vis::SliceLayer layer;
     layer.channel = info.channel(picture.shows.channel).name;
     if (!picture.shows.lines.drawn()) layer.contours = picture.shows.lines.count;

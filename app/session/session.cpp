@@ -99,7 +99,7 @@ bool toScale(const DataRef& data, const volume::DatasetInfo& info) {
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info) {
     vis::WorldFrame frame = vis::worldFrame(info, session.stretch);
     if (toScale(session.data, info)) frame.axes = {};
-    return {vis::placeLenses(session.lenses, frame, session.camera, session.cursor), frame};
+    return {vis::placeLenses(session.lenses, frame, session.camera, session.cursor, session.time), frame};
 }
 
 vis::LensSpace brushSpace(const Session& session, const volume::DatasetInfo& info) {

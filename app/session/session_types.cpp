@@ -71,5 +71,6 @@ template const ValueType& valueType<volume::DifferenceRecipe>();
 template const ValueType& valueType<volume::ExpressionRecipe>();
 template const ValueType& valueType<volume::PiecesRecipe>();
 template const ValueType& valueType<volume::SmoothRecipe>();
+template const ValueType& valueType<volume::UncertaintyRecipe>();
 
 } // namespace tessera::app

@@ -75,5 +75,6 @@ extern template const ValueType& valueType<volume::DifferenceRecipe>();
 extern template const ValueType& valueType<volume::ExpressionRecipe>();
 extern template const ValueType& valueType<volume::PiecesRecipe>();
 extern template const ValueType& valueType<volume::SmoothRecipe>();
+extern template const ValueType& valueType<volume::UncertaintyRecipe>();
 
 } // namespace tessera::app

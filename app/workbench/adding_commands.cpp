@@ -96,6 +96,12 @@ void addLenses(SceneChanges& list) {
                  "new magnifier region", [effect = effect](Session& session, const volume::DatasetInfo& info) {
                      addLens(session, info, effect);
                  });
+    list.add(SceneTask::Lenses, "Lens: what is brushed",
+             "Add a lens that is as large as what the brushes select, such as a region or the inside of a surface",
+             "new selection region iso-surface shape", [](Session& session, const volume::DatasetInfo& info) {
+                 addLens(session, info, vis::LensEffect::Replace);
+                 session.lenses.back().shape = vis::LensShape::Selection;
+             });
     list.add(
         SceneTask::Lenses, "Lens: another parameter",
         "Add a lens at the cross-hair in which a parameter not shown yet is drawn instead",

@@ -167,7 +167,7 @@ struct MediumScene {
     }
     glm::dvec4 after(const DrawnLayer& layer, glm::dvec3 color, double opacity, glm::dvec3 world) const {
         const Interest doi = scene.interest(world);
-        const LensAction lens = scene.lensAction(layer, world);
+        const LensAction lens = scene.lensAction(layer, world, doi.doi);
         return {scene.focused(layer, scene.tinted(layer, color, world), doi, lens.saturation),
                 opacity * scene.opacityFactor(layer, doi) * lens.opacity};
     }

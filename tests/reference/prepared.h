@@ -126,8 +126,8 @@ struct Prepared {
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
         return gradient(of, world, of.part(cells(world)));
     }
-    LensAction lensAction(const DrawnLayer& layer, glm::dvec3 world) const {
-        return vis::lensAction(lenses, layer.lens, world);
+    LensAction lensAction(const DrawnLayer& layer, glm::dvec3 world, double doi) const {
+        return vis::lensAction(lenses, layer.lens, world, doi);
     }
     /// Opacity factor of a layer from its degree of interest and lenses.
     double opacityFactor(const DrawnLayer& layer, const Interest& doi) const {

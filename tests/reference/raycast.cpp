@@ -83,7 +83,7 @@ template <class Number> struct Caster {
             const std::optional<Reading> found = layer.samples->read(scene.cells(place));
             if (!found) continue;
             const Interest doi = scene.interest(place);
-            const LensAction lens = scene.lensAction(layer, glm::dvec3(at(t)));
+            const LensAction lens = scene.lensAction(layer, glm::dvec3(at(t)), doi.doi);
             events.push_back({t, scene.focused(layer, sliceColor(layer, *found), doi, lens.saturation),
                               std::min(double(std::get<SliceLayer>(*layer.technique).opacity) *
                                            scene.opacityFactor(layer, doi) * lens.opacity,
@@ -177,7 +177,7 @@ template <class Number> struct Caster {
         const glm::dvec3 place(at((lo + hi) / 2));
         if (layer.samples->part(scene.cells(place)) != now->part || !shows(inSamples(double(lo + hi) / 2))) return;
         const Interest doi = scene.interest(place);
-        const LensAction lens = scene.lensAction(layer, place);
+        const LensAction lens = scene.lensAction(layer, place, doi.doi);
         const glm::dvec3 plain = scene.tinted(layer, linearFromSrgb(glm::dvec3(iso.color)), place);
         const glm::dvec3 albedo = scene.focused(layer, plain, doi, lens.saturation);
         const double opacity = std::min(double(iso.opacity) * scene.opacityFactor(layer, doi) * lens.opacity, 1.0);
@@ -238,7 +238,7 @@ template <class Number> struct Caster {
         const Classified classified = classify(layer, t);
         const glm::dvec3 place(at(t));
         const Interest doi = scene.interest(place);
-        const LensAction lens = scene.lensAction(layer, place);
+        const LensAction lens = scene.lensAction(layer, place, doi.doi);
         const double opacity = classified.color.a * scene.opacityFactor(layer, doi) * lens.opacity;
         const double thickness = double(volume.density) * classified.share * coverage(holes, k) * count;
         if (opacity <= 0 || thickness <= 0) return;

@@ -15,8 +15,9 @@ const TransferFunction& transferFor(const Scene& scene, const std::string& name)
 }
 
 bool lensesBend(const Scene& scene) {
-    return std::ranges::any_of(scene.lenses,
-                               [](const Lens& lens) { return lens.enabled && lens.effect == LensEffect::Magnify; });
+    return std::ranges::any_of(scene.lenses, [&](const Lens& lens) {
+        return activeAt(lens, scene.time) && lens.inSpace() && lens.effect == LensEffect::Magnify;
+    });
 }
 
 int peelsOf(const Scene& scene) {
@@ -40,7 +41,7 @@ bool drawn(const Scene& scene, const GeometryLayer& layer) {
 }
 
 std::vector<PlacedLens> placeLenses(const Scene& scene, const WorldFrame& frame) {
-    return placeLenses(scene.lenses, frame, scene.camera, scene.cursor);
+    return placeLenses(scene.lenses, frame, scene.camera, scene.cursor, scene.time);
 }
 
 std::optional<Paper> paperOf(const Scene& scene) {

@@ -47,6 +47,7 @@ Scene tablesScene(const Scene& scene, const volume::DatasetInfo& info) {
     Scene used = scene;
     used.camera = {};
     used.cursor = glm::dvec3(0);
+    for (Lens& lens : used.lenses) lens.enabled = activeAt(lens, scene.time);
     used.time = 0; // covered by the frames in the key
     used.geometry.clear();
     used.clips.clear();

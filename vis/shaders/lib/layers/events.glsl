@@ -42,7 +42,7 @@ void findEvents() {
                     present(s);
         float at = sampleAt(t);
         events[i].at = seen && clipShows(at) ? at : kNowhere;
-        vec2 lens = lensAction(SLICE_LENS(i), world);
+        vec2 lens = lensAction(SLICE_LENS(i), world, doi);
         float alpha = min(sliceMap[i].w * focusOpacity(doi, SLICE_BRUSHED(i)) * lens.x, 1.0);
         events[i].color = vec4(focusColor(c, doi, lens.y, SLICE_BRUSHED(i)) * alpha, alpha);
         events[i].interest = focusInterest(doi, SLICE_BRUSHED(i));
