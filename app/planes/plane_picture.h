@@ -18,7 +18,8 @@ namespace tessera::app {
 struct PlaneContent {
     int channel = 0;            ///< of its colours: index of DatasetInfo::channels()
     ContourSettings lines = {}; ///< of contour lines
-    bool plain = false;         ///< without lenses, brushes, profile lines and cross-hair
+    vis::Strokes strokes = {};
+    bool plain = false; ///< without lenses, brushes, profile lines and cross-hair
 };
 
 struct PlanePicture {

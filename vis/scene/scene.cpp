@@ -33,6 +33,12 @@ int peelsOf(const Scene& scene) {
     return peels;
 }
 
+const StrokePicture* strokesOf(const Scene& scene, int layer) {
+    for (const SliceStrokes& each : scene.strokes)
+        if (each.layer == layer) return each.picture.get();
+    return nullptr;
+}
+
 bool drawn(const Scene& scene, const GeometryLayer& layer) {
     // Without an active brush there is no context.
     return layer.geometry && layer.style.opacity > 0 &&

@@ -126,6 +126,7 @@ struct Scene {
     Selection selection;
     RenderParams render;
     std::vector<GeometryLayer> geometry; ///< meshes and lines, computed outside the renderer
+    std::vector<SliceStrokes> strokes;   ///< of slices, computed outside the renderer
     Lighting lighting;
     std::vector<Clip> clips; ///< only what all keep is drawn
     std::vector<Lens> lenses;
@@ -151,6 +152,9 @@ const TransferFunction& transferFor(const Scene& scene, const std::string& name)
 
 /// Number of depth-peeling layers of the scene's geometry: 0 without geometry, 1 if all is opaque, else kPeels.
 int peelsOf(const Scene& scene);
+
+/// The strokes of a slice, null where it has none (yet).
+const StrokePicture* strokesOf(const Scene& scene, int layer);
 
 /// Whether a geometry layer is visible.
 bool drawn(const Scene& scene, const GeometryLayer& layer);

@@ -49,6 +49,7 @@ Scene tablesScene(const Scene& scene, const volume::DatasetInfo& info) {
     used.cursor = glm::dvec3(0);
     used.time = 0; // covered by the frames in the key
     used.geometry.clear();
+    used.strokes.clear();
     used.clips.clear();
     used.lighting = {};
     used.tone = {};

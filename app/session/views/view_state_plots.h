@@ -191,6 +191,7 @@ struct ObliqueView {
     std::string channel;         ///< "" = the channel of the first layer
     glm::dvec3 normal{-1, 0, 1}; ///< in true proportions, of any length
     ContourSettings lines;
+    vis::Strokes strokes = {};
     bool inSpace = true;
     bool showReadout = true;
     bool operator==(const ObliqueView&) const = default;
@@ -201,6 +202,7 @@ struct ObliqueView {
                                             "plane is seen from the side that it points to",
                                      .range = Range{-1, 1}});
         ContourSettings::describe(self.lines, visit);
+        visit(self.strokes, vis::strokesField());
         visit(self.inSpace, FieldInfo{"inSpace", "Draw the slice in the volume views too"});
         visit(self.showReadout, FieldInfo{"readout", "List the value of every parameter at the cross-hair"});
     }

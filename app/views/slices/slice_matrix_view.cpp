@@ -130,7 +130,8 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
             ImGui::PushID(static_cast<int>(index));
             useMouse(context, cache.slices[index], slice, frame);
             ImGui::PopID();
-            drawPicture(context, cache.slices[index], slice, frame, 1 / static_cast<double>(cache.slices.size()));
+            drawPicture(context, cache.slices[index], slice, frame, 1 / static_cast<double>(cache.slices.size()),
+                        pane + std::to_string(index));
             drawOver(context, cache.slices[index], slice, frame, {});
             if (row == 0 && context.decoration.title) drawPlace(draw, {at.x, origin.y}, slice, pitch - gap);
             if (plane > 0) continue;
