@@ -14,7 +14,7 @@ namespace tessera::vis {
 
 namespace {
 
-constexpr double kStep = 0.5; ///< texels
+constexpr double kStep = 1; ///< texels
 
 /// A number that looks random (T. Wang's and B. Jenkins' mixing of integers).
 std::uint32_t mixedBits(std::uint32_t x) {

@@ -36,7 +36,7 @@ struct LineIntegralSettings {
 };
 
 /// The mean of the noise along the line through the middle of each texel, weighted by the kernel, over the root of the
-/// sum of squared weights, so that contrast does not depend on how far a line comes. Lines go in steps of half a texel
+/// sum of squared weights, so that contrast does not depend on how far a line comes. Lines go in steps of one texel
 /// (the last one is shorter) by the rule of the midpoint with vectors of length 1; they end where the field is absent,
 /// of another part, at the border, or 0. Where the vector is 0 the noise itself; absent texels are NaN. `noise`: one
 /// number per texel. Lightness of the whole is then stretched to mean 0 and the deviation kStrokeDeviation, and clipped

@@ -3,6 +3,7 @@
 #include "app/session/views/contour_settings.h"
 #include "app/session/views/section_settings.h"
 #include "app/session/views/view_kind.h"
+#include "vis/scene/strokes.h"
 #include "volume/base/data_units.h"
 #include "volume/base/describe.h"
 #include "volume/field/space_axis.h"
