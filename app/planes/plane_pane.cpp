@@ -42,6 +42,7 @@ vis::Scene planeScene(const ViewContext& context, const PlanePicture& picture, c
     const volume::DatasetInfo& info = context.source->info();
     vis::Scene scene = sceneWithLimits(context);
     scene.paper.reset();
+    scene.depthMask = {};
     scene.showBox = false;
     vis::SliceLayer layer;
     layer.channel = info.channel(picture.shows.channel).name;

@@ -2,6 +2,7 @@
 
 #include "vis/scene/camera.h"
 #include "vis/scene/clipping.h"
+#include "vis/scene/depth_mask.h"
 #include "vis/scene/geometry.h"
 #include "vis/scene/layers.h"
 #include "vis/scene/lens.h"
@@ -131,6 +132,7 @@ struct Scene {
     std::vector<Clip> clips; ///< only what all keep is drawn
     std::vector<Lens> lenses;
     Tone tone;
+    DepthMask depthMask;
     glm::dvec3 stretch{1};
     glm::dvec3 cursor{0}; ///< physical
     double time = 0;

@@ -53,6 +53,7 @@ Scene tablesScene(const Scene& scene, const volume::DatasetInfo& info) {
     used.clips.clear();
     used.lighting = {};
     used.tone = {};
+    used.depthMask = {};
     used.background = used.boxColor = glm::vec3(0);
     used.paper.reset();
     used.showGround = used.showBox = false;
