@@ -29,7 +29,7 @@ vis::Scene AsyncScene::get(ViewContext& context, const std::string& pane, bool m
     vis::Scene scene = sceneWithLimits(context);
     addFocusLayers(scene, context.source->info());
     addObliqueSlices(scene, context.session, context.source->info());
-    scene.geometry = geometry_.get(context, pane, moving);
+    scene.geometry = vis::withHalos(geometry_.get(context, pane, moving), vis::groundColor(scene));
     strokes_.addTo(context, scene, pane);
     return scene;
 }

@@ -107,6 +107,13 @@ const AlikeScene kAlikeScenes[] = {
      [](Scene& s) { s.lighting.model = LightModel::Physical, s.lighting.environment.kind = Environment::Sky; }},
     {"a mesh and lines",
      [](Scene& s) { s.geometry = {{.geometry = ballAndSpiral(true), .style = {.lineWidth = 3}, .channel = "v"}}; }},
+    {"halos of a mesh and lines",
+     [](Scene& s) {
+         s.geometry =
+             withHalos({{.geometry = ballAndSpiral(true), .style = {.lineWidth = 3, .halo = 5}, .channel = "v"}},
+                       {0.9f, 0.2f, 0.1f});
+         s.layers.resize(1);
+     }},
     {"a mesh without normals in a volume",
      [](Scene& s) {
          s.geometry = {{.geometry = ballAndSpiral(false), .style = {.color = {0.2f, 0.7f, 0.4f}, .opacity = 0.5f}}};
