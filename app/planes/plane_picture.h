@@ -18,6 +18,7 @@ namespace tessera::app {
 struct PlaneContent {
     int channel = 0;            ///< of its colours: index of DatasetInfo::channels()
     ContourSettings lines = {}; ///< of contour lines
+    vis::Strokes strokes = {};
     bool plain = false;         ///< without lenses, brushes, profile lines and cross-hair
     bool crossed = false;       ///< a plain one with the cross-hair
 };

@@ -67,6 +67,7 @@ vis::Scene sceneOf(const Session& session) {
     scene.clips = session.clips;
     scene.lenses = session.lenses;
     scene.tone = session.tone;
+    scene.depthMask = session.depthMask;
     scene.paper = session.paper;
     scene.stretch = session.stretch;
     scene.cursor = session.cursor;

@@ -181,6 +181,7 @@ struct Session {
     std::vector<vis::Clip> clips;
     std::vector<vis::Lens> lenses; ///< a later one lies over those before it
     vis::Tone tone;
+    vis::DepthMask depthMask;
     std::optional<vis::Paper> paper; ///< in place of the theme's background
     Animation animation;
     Appearance appearance;
@@ -221,6 +222,7 @@ struct Session {
         visit(self.clips, FieldInfo{"clips", "Planes and bodies that cut the data open"});
         visit(self.lenses, FieldInfo{"lenses", "Lenses; a later one lies over an earlier one"});
         visit(self.tone, FieldInfo{"tone", "Mapping of bright light to the range of the screen"});
+        visit(self.depthMask, FieldInfo{"depthMask", "Shadows of depth around what stands before something else"});
         visit(self.paper, FieldInfo{"paper", "Paper behind the picture; none: the background of the theme"});
         visit(self.animation, FieldInfo{"animation", "Playing through time or keyframes"});
         visit(self.appearance, FieldInfo{"appearance", "Appearance of the window"});

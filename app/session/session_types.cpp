@@ -61,6 +61,7 @@ template const ValueType& valueType<vis::Selection>();
 template const ValueType& valueType<vis::SilhouetteEnhancement>();
 template const ValueType& valueType<vis::SliceLayer>();
 template const ValueType& valueType<vis::SphereRegion>();
+template const ValueType& valueType<vis::Strokes>();
 template const ValueType& valueType<vis::Tone>();
 template const ValueType& valueType<vis::TransferFunction>();
 template const ValueType& valueType<vis::TransferRegion>();

@@ -65,6 +65,7 @@ extern template const ValueType& valueType<vis::Selection>();
 extern template const ValueType& valueType<vis::SilhouetteEnhancement>();
 extern template const ValueType& valueType<vis::SliceLayer>();
 extern template const ValueType& valueType<vis::SphereRegion>();
+extern template const ValueType& valueType<vis::Strokes>();
 extern template const ValueType& valueType<vis::Tone>();
 extern template const ValueType& valueType<vis::TransferFunction>();
 extern template const ValueType& valueType<vis::TransferRegion>();

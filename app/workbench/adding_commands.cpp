@@ -81,6 +81,18 @@ void addLayers(SceneChanges& list) {
                        (kind != 3 || !firstVector(workbench.document().info()).empty());
             });
     }
+    list.add(
+        SceneTask::Layers, "Add slice with strokes", "Draw a parameter on a plane, with fine strokes along a vector",
+        "new cut section flow lic line integral convolution texture direction",
+        [&workbench](Session& session, const volume::DatasetInfo& info) {
+            addLayer(session, *workbench.source(), 2);
+            if (auto* const slice = std::get_if<vis::SliceLayer>(&session.layers.back().technique))
+                slice->strokes.vector = firstVector(info);
+        },
+        [&workbench] {
+            return workbench.document().session().layers.size() < kMostLayers &&
+                   !firstVector(workbench.document().info()).empty();
+        });
 }
 
 /// Lenses at the cross-hair.

@@ -41,6 +41,7 @@ const std::set<std::string> kElsewhere = {
     "Undo",                                       // every case here
     "Redo",                                       // every case here
     "Add flow layer",                             // Palette.FindsByOtherWords
+    "Add slice with strokes",                     // Palette.AddsWhatItNames
     "Seed brushed",                               // Palette.ALensOfAnotherParameterAndSeedsInTheSelectionAreOneStepEach
     "Add derived parameter: divergence",          // Palette.FindsByOtherWords, they need a vector
     "Add derived parameter: vorticity",           // the same

@@ -88,6 +88,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
             one.integrals = integralFunctions(*one.function, one.range);
         if (const auto* slice = std::get_if<SliceLayer>(one.technique))
             one.plane = slicePlane(*slice, frame, scene.cursor);
+        one.strokes = strokesOf(scene, int(&layer - scene.layers.data()));
         layers.push_back(std::move(one));
     }
     for (const std::string& channel : interestOf.channels()) brushed.push_back(load(channel));

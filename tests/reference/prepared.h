@@ -25,6 +25,7 @@ struct DrawnLayer {
     BrushEffect brushes = BrushEffect::Fade;
     int lens = -1; ///< index into Prepared::lenses of the lens that it is drawn in, -1: everywhere
     Plane plane;   ///< of a slice
+    const StrokePicture* strokes = nullptr;     ///< of a slice
     std::optional<IntegralFunctions> integrals; ///< for pre-integrated layers
     const Samples* colors = nullptr;            ///< the channel that colours it; null: its own
     Range colorRange;

@@ -34,6 +34,26 @@ int peelsOf(const Scene& scene) {
     return peels;
 }
 
+std::vector<GeometryLayer> withHalos(const std::vector<GeometryLayer>& layers, glm::vec3 color) {
+    std::vector<GeometryLayer> out;
+    for (const GeometryLayer& layer : layers) {
+        out.push_back(layer);
+        if (!(layer.style.halo > 0)) continue;
+        GeometryLayer& halo = out.emplace_back(layer);
+        halo.style.rim = layer.style.halo;
+        halo.style.color = color;
+        halo.style.look = {};
+        halo.channel.clear();
+    }
+    return out;
+}
+
+const StrokePicture* strokesOf(const Scene& scene, int layer) {
+    for (const SliceStrokes& each : scene.strokes)
+        if (each.layer == layer) return each.picture.get();
+    return nullptr;
+}
+
 bool drawn(const Scene& scene, const GeometryLayer& layer) {
     // Without an active brush there is no context.
     return layer.geometry && layer.style.opacity > 0 &&

@@ -3,6 +3,7 @@
 #include "app/session/views/contour_settings.h"
 #include "app/session/views/section_settings.h"
 #include "app/session/views/view_kind.h"
+#include "vis/scene/strokes.h"
 #include "volume/base/data_units.h"
 #include "volume/base/describe.h"
 #include "volume/field/space_axis.h"
@@ -212,6 +213,7 @@ struct ObliqueView {
     std::string channel;         ///< "" = the channel of the first layer
     glm::dvec3 normal{-1, 0, 1}; ///< in true proportions, of any length
     ContourSettings lines;
+    vis::Strokes strokes = {};
     bool inSpace = true;
     bool showReadout = true;
     bool operator==(const ObliqueView&) const = default;
@@ -222,6 +224,7 @@ struct ObliqueView {
                                             "plane is seen from the side that it points to",
                                      .range = Range{-1, 1}});
         ContourSettings::describe(self.lines, visit);
+        visit(self.strokes, vis::strokesField());
         visit(self.inSpace, FieldInfo{"inSpace", "Draw the slice in the volume views too"});
         visit(self.showReadout, FieldInfo{"readout", "List the value of every parameter at the cross-hair"});
     }

@@ -71,11 +71,13 @@ struct SlicesView {
     static constexpr std::string_view kType = "slices";
     std::string channel; ///< "" = the channel of the first layer
     ContourSettings lines;
+    vis::Strokes strokes = {};
     bool showReadout = true;
     bool operator==(const SlicesView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
         ContourSettings::describe(self.lines, visit);
+        visit(self.strokes, vis::strokesField());
         visit(self.showReadout, FieldInfo{"readout", "List the value of every parameter at the cross-hair"});
     }
 };

@@ -125,9 +125,11 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, const 
     const WallKind kind = wall.kind;
     vis::Scene out = scene;
     out.geometry.clear();
+    out.strokes.clear();
     out.clips.clear();
     out.lenses.clear();
     out.tone = {};
+    out.depthMask = {};
     out.lighting.shadows = {};
     out.paper.reset();
     out.showBox = out.showGround = false;

@@ -187,12 +187,12 @@ void drawCell(ViewContext& context, PlaneState& state, const PlanePicture& slice
         context.session.animation.playing = false;
     }
     ImGui::PopID();
-    drawPicture(context, state, slice, frame, share);
+    drawPicture(context, state, slice, frame, share, pane + std::to_string(index));
     drawOver(context, state, slice, frame, {});
 }
 
 void drawCells(ViewContext& context, SliceMatrixCache& cache, const MatrixLayout& layout, const SliceMatrix& matrix,
-               const vis::WorldFrame& world) {
+               const vis::WorldFrame& world, const std::string& pane) {
     cache.slices.resize(matrix.pictures.size());
     const ImVec2 lo = ImGui::GetWindowDrawList()->GetClipRectMin(), hi = ImGui::GetWindowDrawList()->GetClipRectMax();
     for (int column = 0; column < matrix.columns; ++column)
@@ -207,7 +207,7 @@ void drawCells(ViewContext& context, SliceMatrixCache& cache, const MatrixLayout
             if (at.x >= hi.x || at.y >= hi.y || frame.plot.max.x <= lo.x || frame.plot.max.y <= lo.y) continue;
             const int index = column * matrix.rows + row;
             drawCell(context, cache.slices[static_cast<std::size_t>(index)], slice, frame, index,
-                     1 / static_cast<double>(cache.slices.size()));
+                     1 / static_cast<double>(cache.slices.size()), pane);
         }
 }
 
@@ -243,7 +243,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
         ImGui::BeginChild("cells", {0, 0}, false, ImGuiWindowFlags_HorizontalScrollbar);
     }
     const MatrixLayout layout = layOut(context, view, matrix, world, {scrolled ? least.x : 1, least.y});
-    drawCells(context, cache, layout, matrix, world);
+    drawCells(context, cache, layout, matrix, world, pane);
     if (context.decoration.title) drawNames(layout, matrix);
     if (context.decoration.legend) drawLegends(context, view, layout, matrix);
     if (scrolled) ImGui::EndChild();
