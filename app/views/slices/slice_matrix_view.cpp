@@ -178,9 +178,9 @@ void drawLegends(const ViewContext& context, const SliceMatrixView& view, const 
             layout.cell.y, legend(row, 0));
 }
 
-void drawCell(ViewContext& context, PlaneState& state, const PlanePicture& slice, const PlaneFrame& frame, int id,
-              double share) {
-    ImGui::PushID(id);
+void drawCell(ViewContext& context, PlaneState& state, const PlanePicture& slice, const PlaneFrame& frame, int index,
+              double share, const std::string& pane) {
+    ImGui::PushID(index);
     useMouse(context, state, slice, frame);
     if (slice.ownTime && ImGui::IsItemActivated()) {
         context.session.time = *slice.ownTime;
