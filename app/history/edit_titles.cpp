@@ -54,7 +54,7 @@ std::string partWord(std::string_view part) {
         {"lighting", "light"},      {"clips", "clipping"},    {"tone", "tone curve"},
         {"animation", "animation"}, {"cursor", "cross-hair"}, {"views", "views"},
         {"layers", "layers"},       {"lenses", "lenses"},     {"paper", "paper"},
-        {"probes", "probes"}};
+        {"probes", "probes"},       {"callouts", "callouts"}};
     for (const auto& [key, word] : kWords)
         if (part == key) return std::string(word);
     return {};
