@@ -60,7 +60,7 @@ glm::vec2 ndcOf(const PictureBox& box, ImVec2 at) {
     return {2 * (at.x - box.min.x) / box.size.x - 1, 1 - 2 * (at.y - box.min.y) / box.size.y};
 }
 
-bool turnScene(ViewContext& context, const CalloutShown& shown) {
+bool turnScene(ViewContext& context, const CalloutPart& shown) {
     Callout& callout = shown.callout;
     mouseArea("scene", shown.inner.size);
     const ImGuiIO& io = ImGui::GetIO();
@@ -88,7 +88,7 @@ bool turnScene(ViewContext& context, const CalloutShown& shown) {
     return changed;
 }
 
-bool useSlice(ViewContext& context, const CalloutShown& shown) {
+bool useSlice(ViewContext& context, const CalloutPart& shown) {
     const auto slice = calloutSlice(context, shown.callout, shown.place, withoutBar(shown.inner));
     if (!slice) return false;
     const glm::dvec3 before = context.session.cursor;
@@ -100,7 +100,7 @@ bool useSlice(ViewContext& context, const CalloutShown& shown) {
     return shown.state.plane.dragging || context.session.cursor != before;
 }
 
-void drawScene(ViewContext& context, const CalloutShown& shown, const vis::Scene& view, bool moving) {
+void drawScene(ViewContext& context, const CalloutPart& shown, const vis::Scene& view, bool moving) {
     const volume::DatasetInfo& info = context.source->info();
     const vis::WorldFrame world = vis::worldFrame(info, context.session.stretch);
     const auto bar = ownBar(context, shown.callout);
@@ -127,7 +127,7 @@ void drawScene(ViewContext& context, const CalloutShown& shown, const vis::Scene
         drawScaleBar(draw, {box.min.x + em() * 0.5f, box.max().y - em() * 0.4f}, length);
 }
 
-void drawSlice(ViewContext& context, const CalloutShown& shown) {
+void drawSlice(ViewContext& context, const CalloutPart& shown) {
     const auto slice = calloutSlice(context, shown.callout, shown.place, withoutBar(shown.inner));
     if (!slice) return;
     drawPicture(context, shown.state.plane, slice->picture, slice->frame, shown.share);
@@ -169,7 +169,7 @@ std::string calloutTitle(const ViewContext& context, const Callout& callout, con
     return firstThatFits({joined({what, where, when}), joined({what, where}), shortest}, width);
 }
 
-bool useCallout(ViewContext& context, const CalloutShown& shown) {
+bool useCallout(ViewContext& context, const CalloutPart& shown) {
     if (shown.inner.size.x < 4 || shown.inner.size.y < 4) return false;
     ImGui::SetCursorScreenPos(shown.inner.min);
     const ShownCallout own(context.session, shown.callout);
@@ -177,7 +177,7 @@ bool useCallout(ViewContext& context, const CalloutShown& shown) {
     return shown.callout.kind == CalloutKind::Slice && useSlice(context, shown);
 }
 
-void drawCallout(ViewContext& context, const CalloutShown& shown, const vis::Scene& view, bool moving) {
+void drawCallout(ViewContext& context, const CalloutPart& shown, const vis::Scene& view, bool moving) {
     if (shown.inner.size.x < 4 || shown.inner.size.y < 4) return;
     const ShownCallout own(context.session, shown.callout);
     switch (shown.callout.kind) {

@@ -31,7 +31,7 @@ struct CalloutState {
 };
 
 /// One callout in one frame of a view.
-struct CalloutShown {
+struct CalloutPart {
     Callout& callout;
     const CalloutPlace& place;
     CalloutState& state;
@@ -45,9 +45,9 @@ std::string calloutTitle(const ViewContext& context, const Callout& callout, con
 
 /// Takes the mouse over its content: a drag turns a scene, with Ctrl the view too, and the wheel magnifies it; in a
 /// slice a drag moves the cross-hair and the wheel a plane. True while something moves.
-bool useCallout(ViewContext& context, const CalloutShown& shown);
+bool useCallout(ViewContext& context, const CalloutPart& shown);
 
 /// Draws its content. `view`: the scene of the view, which callouts without layers and time of their own show.
-void drawCallout(ViewContext& context, const CalloutShown& shown, const vis::Scene& view, bool moving);
+void drawCallout(ViewContext& context, const CalloutPart& shown, const vis::Scene& view, bool moving);
 
 } // namespace tessera::app

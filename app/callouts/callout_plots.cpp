@@ -15,14 +15,14 @@ namespace {
 
 constexpr int kCalloutBins = 40, kLinePoints = 128;
 
-void noteIn(const CalloutShown& shown, const std::string& text) {
+void noteIn(const CalloutPart& shown, const std::string& text) {
     const PictureBox& box = shown.inner;
     addFittedWithBackdrop(*ImGui::GetWindowDrawList(), {box.min.x + box.size.x / 2, box.min.y + box.size.y / 2},
                           {0.5f, 0.5f}, plotColors().faint, text, box.size.x - em());
 }
 
 /// The answer to a question about the samples of a callout; null where there is none (yet), which it says.
-std::shared_ptr<const StatisticsResult> statisticsOf(ViewContext& context, const CalloutShown& shown,
+std::shared_ptr<const StatisticsResult> statisticsOf(ViewContext& context, const CalloutPart& shown,
                                                      const std::vector<int>& channels, int bins) {
     const volume::DatasetInfo& info = context.numbers->info();
     const auto region = samplesOfPlace(shown.place, info, context.session.cursor);
@@ -96,7 +96,7 @@ CalloutLine calloutLine(const Session& session, const volume::DatasetInfo& info,
     return line;
 }
 
-void drawCalloutHistogram(ViewContext& context, const CalloutShown& shown) {
+void drawCalloutHistogram(ViewContext& context, const CalloutPart& shown) {
     const volume::DatasetInfo& info = context.numbers->info();
     const auto channel = numbersChannel(context, shown.callout);
     if (!channel) return;
@@ -120,7 +120,7 @@ void drawCalloutHistogram(ViewContext& context, const CalloutShown& shown) {
     drawAxis(draw, frame, AxisSide::Left, "", "", shown.inner.min.y, shown.inner.max().y);
 }
 
-void drawCalloutProfile(ViewContext& context, const CalloutShown& shown) {
+void drawCalloutProfile(ViewContext& context, const CalloutPart& shown) {
     const volume::DatasetInfo& info = context.numbers->info();
     const auto channel = numbersChannel(context, shown.callout);
     if (!channel) return;
@@ -165,7 +165,7 @@ void drawCalloutProfile(ViewContext& context, const CalloutShown& shown) {
     drawAxis(draw, frame, AxisSide::Left, "", "", shown.inner.min.y, shown.inner.max().y);
 }
 
-void drawCalloutNumbers(ViewContext& context, const CalloutShown& shown) {
+void drawCalloutNumbers(ViewContext& context, const CalloutPart& shown) {
     const volume::DatasetInfo& info = context.numbers->info();
     const std::vector<int> channels = chosenChannels(info, {}, 12);
     if (channels.empty()) return;

@@ -15,8 +15,8 @@ std::optional<vis::Region> samplesOfPlace(const CalloutPlace& place, const volum
 CalloutLine calloutLine(const Session& session, const volume::DatasetInfo& info, const vis::WorldFrame& world,
                         const Callout& callout, const CalloutPlace& place, int channel);
 
-void drawCalloutHistogram(ViewContext& context, const CalloutShown& shown);
-void drawCalloutProfile(ViewContext& context, const CalloutShown& shown);
-void drawCalloutNumbers(ViewContext& context, const CalloutShown& shown);
+void drawCalloutHistogram(ViewContext& context, const CalloutPart& shown);
+void drawCalloutProfile(ViewContext& context, const CalloutPart& shown);
+void drawCalloutNumbers(ViewContext& context, const CalloutPart& shown);
 
 } // namespace tessera::app

@@ -80,7 +80,7 @@ PictureBox CalloutsBeside::innerOf(const PictureBox& box) const {
             {std::floor(box.size.x - 2), std::floor(std::max(0.0f, box.size.y - title - 1))}};
 }
 
-CalloutShown CalloutsBeside::partOf(std::size_t at) const {
+CalloutPart CalloutsBeside::partOf(std::size_t at) const {
     const Shown& own = shown_[at];
     return {.callout = context_.session.callouts[own.index],
             .place = own.place,
@@ -187,7 +187,7 @@ void CalloutsBeside::drawBox(ImDrawList& draw, std::size_t at, const vis::Scene&
     const ImVec4 ground = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
     draw.AddRectFilled(box.min, box.max(), ImGui::ColorConvertFloat4ToU32({ground.x, ground.y, ground.z, 1}), corner);
     draw.PushClipRect(box.min, box.max(), true);
-    const CalloutShown part = partOf(at);
+    const CalloutPart part = partOf(at);
     {
         const ShownCallout shown(context_.session, part.callout);
         const std::string title = calloutTitle(context_, part.callout, own.place, box.size.x - em());

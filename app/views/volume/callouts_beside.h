@@ -42,7 +42,7 @@ private:
     void place(const SpaceFrame& space, bool moving);
     PictureBox boxOf(std::size_t at) const;
     PictureBox innerOf(const PictureBox& box) const;
-    CalloutShown partOf(std::size_t at) const;
+    CalloutPart partOf(std::size_t at) const;
     void hold(bool free);
     bool takeOne(std::size_t at);
     void drawLine(ImDrawList& draw, const SpaceFrame& space, std::size_t at) const;
