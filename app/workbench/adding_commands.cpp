@@ -150,14 +150,14 @@ void addCallouts(SceneChanges& list) {
         [](Session& session, const volume::DatasetInfo& info) { calloutOfLens(session, info); },
         [&workbench] { return takesCallout(workbench.session()); });
     list.add(
-        SceneTask::Layers, "Callout of plane",
+        SceneTask::Lenses, "Callout of plane",
         "Show the oblique slice, or a plane at the cross-hair, flat beside the volume", kWords,
         [](Session& session, const volume::DatasetInfo& info) {
             addCallout(session, info, CalloutOf::Plane, firstPlane(session));
         },
         [&workbench] { return takesCallout(workbench.session()); });
     list.add(
-        SceneTask::Brushes, "Callout of brush", "Show what the newest brush holds enlarged beside the volume", kWords,
+        SceneTask::Lenses, "Callout of brush", "Show what the newest brush holds enlarged beside the volume", kWords,
         [](Session& session, const volume::DatasetInfo& info) { calloutOfBrush(session, info); },
         [&workbench] { return takesCallout(workbench.session()) && !workbench.session().selection.brushes.empty(); });
 }

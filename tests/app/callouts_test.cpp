@@ -60,8 +60,9 @@ TEST(CalloutLayout, LinesNeverCrossAndBoxesNeverOverlap) {
         expectApart(layout, anchors);
         for (std::size_t i = 0; i < anchors.size(); ++i)
             for (std::size_t k = 0; k < i; ++k)
-                if (anchors[i] == anchors[k] && layout.slots[i].right == layout.slots[k].right)
+                if (anchors[i] == anchors[k] && layout.slots[i].right == layout.slots[k].right) {
                     EXPECT_GT(layout.slots[i].row, layout.slots[k].row) << "those of one placeholder keep their order";
+                }
     }
 }
 
@@ -233,7 +234,7 @@ TEST(CalloutEdits, ComparesParametersOfOnePlaceholderAndGoWithIt) {
     session.callouts[0].layers = session.layers;
     session.callouts[0].time = 0.5;
     session.callouts[0].turn = glm::angleAxis(0.7f, glm::normalize(glm::vec3(1, 2, 3)));
-    EXPECT_TRUE(sessionFromJson(toJson(session)) == session);
+    EXPECT_TRUE(sessionFromJson(toJson(session), "here") == session);
     removeLens(session, 0);
     ASSERT_EQ(session.callouts.size(), 1u);
     EXPECT_EQ(session.callouts[0].of, CalloutOf::Plane);
