@@ -47,6 +47,18 @@ void drawSceneEntries(ViewContext& context, Callout& callout) {
         callout.turn = glm::quat(1, 0, 0, 0);
 }
 
+/// A copy of a callout that shows another parameter.
+void compareWith(ViewContext& context, Callout other) {
+    Session& session = context.session;
+    const std::string name = parameterToCompare(session, context.source->info(), other.of, other.placeholder);
+    other.name.clear();
+    if (other.kind != CalloutKind::Scene)
+        other.channel = name;
+    else if (!name.empty())
+        showAlone(context, other, name, false);
+    session.callouts.push_back(std::move(other));
+}
+
 } // namespace
 
 void calloutOfLens(Session& session, const volume::DatasetInfo& info, std::string lens) {
@@ -103,10 +115,8 @@ bool drawCalloutMenu(ViewContext& context, std::size_t index) {
         ImGui::EndMenu();
     }
     ImGui::Separator();
-    const CalloutOf of = callout.of;
-    const std::string placeholder = callout.placeholder;
     if (ImGui::MenuItem("Compare with another parameter", nullptr, false, takesCallout(session)))
-        addCallout(session, info, of, placeholder);
+        compareWith(context, callout);
     return ImGui::MenuItem("Remove callout");
 }
 

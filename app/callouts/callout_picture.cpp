@@ -2,6 +2,7 @@
 
 #include "app/callouts/callout_plots.h"
 #include "app/callouts/callout_slice.h"
+#include "app/pane/axes3d.h"
 #include "app/pane/scale_bar.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace tessera::app {
 
@@ -41,12 +43,13 @@ std::optional<LegendEntry> ownBar(const ViewContext& context, const Callout& cal
     return std::nullopt;
 }
 
-/// What scenes with layers of their own show, as in legends: "T [K]", "T = 354 K".
-std::string layersText(const ViewContext& context) {
+/// What the visible layers show, as in legends: "T [K]", "T surface 354 K"; those of a lens alone, or of all if it is
+/// "".
+std::string contentText(const ViewContext& context, const std::string& lens) {
     const volume::DatasetInfo& info = context.source->info();
     std::string text;
     for (const vis::Layer& layer : context.session.layers) {
-        if (!layer.visible) continue;
+        if (!layer.visible || (!lens.empty() && layer.lens != lens)) continue;
         const auto channel = info.findChannel(vis::shownChannel(layer.technique));
         const bool volume = std::holds_alternative<vis::VolumeLayer>(layer.technique);
         text += (text.empty() ? "" : ", ") +
@@ -119,6 +122,12 @@ void drawScene(ViewContext& context, const CalloutPart& shown, const vis::Scene&
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     addPicture(draw, status.texture, box.min, box.max());
     if (bar) drawBarBelow(shown.inner, *bar);
+    const glm::dvec3 cursor = world.toWorld(context.session.cursor);
+    if (context.decoration.cursor &&
+        (shown.place.normal || glm::distance(cursor, shown.place.center) <= shown.place.radius()))
+        if (const auto at = spaceFrame(box.min, box.max(), scene.camera, info, context.session.stretch)
+                                .pixel(context.session.cursor))
+            draw.AddCircle(*at, em() * 0.35f, plotColors().cursor, 0, std::max(1.0f, em() * 0.1f));
     if (!context.decoration.scaleBar || box.size.x < em() * 9 || timeAxisOf(context.session, info)) return;
     const ScaleBar length = scaleBar(scene.camera, world, context.session.stretch, info.lengthUnit, box.size.y,
                                      std::min(em() * 6, box.size.x * 0.45f));
@@ -143,7 +152,8 @@ std::string calloutTitle(const ViewContext& context, const Callout& callout, con
     const volume::DatasetInfo& info = context.source->info();
     std::string what, where = place.name, when;
     if (callout.kind == CalloutKind::Scene) {
-        if (callout.layers) what = layersText(context);
+        if (callout.layers || callout.of == CalloutOf::Lens)
+            what = contentText(context, callout.layers ? std::string() : callout.placeholder);
     } else if (callout.kind != CalloutKind::Numbers) {
         if (const auto channel = resolveChannel(info, session, callout.channel))
             what = titleWithUnit(info.channel(*channel).name, info.channel(*channel).unit);

@@ -10,25 +10,29 @@ bool showsPlace(const Callout& callout, CalloutOf of, const std::string& placeho
     return callout.of == of && callout.placeholder == placeholder;
 }
 
-/// The first scalar parameter that no slice of the placeholder shows, nor the view itself.
-std::string parameterToCompare(const Session& session, const volume::DatasetInfo& info, CalloutOf of,
-                               const std::string& placeholder) {
-    const std::vector<int> scalars = scalarChannels(info);
-    std::vector<std::string> taken;
-    const std::string first =
-        session.layers.empty() ? std::string() : vis::shownChannel(session.layers.front().technique);
-    for (const Callout& each : session.callouts)
-        if (showsPlace(each, of, placeholder))
-            taken.push_back(each.kind == CalloutKind::Scene || each.channel.empty() ? first : each.channel);
-    for (const int channel : scalars)
-        if (std::string name = info.channel(channel).name; std::ranges::find(taken, name) == taken.end()) return name;
-    return scalars.empty() ? std::string() : info.channel(scalars.front()).name;
-}
-
 } // namespace
 
 bool takesCallout(const Session& session) {
     return session.callouts.size() < kMostCallouts;
+}
+
+std::string parameterToCompare(const Session& session, const volume::DatasetInfo& info, CalloutOf of,
+                               const std::string& placeholder) {
+    const std::vector<int> scalars = scalarChannels(info);
+    std::vector<std::string> taken;
+    for (const Callout& each : session.callouts) {
+        if (!showsPlace(each, of, placeholder)) continue;
+        const bool scene = each.kind == CalloutKind::Scene;
+        if (scene && each.layers)
+            for (const vis::Layer& layer : *each.layers) taken.push_back(vis::shownChannel(layer.technique));
+        else if (!scene && !each.channel.empty())
+            taken.push_back(each.channel);
+        else if (!session.layers.empty())
+            taken.push_back(vis::shownChannel(session.layers.front().technique));
+    }
+    for (const int channel : scalars)
+        if (std::string name = info.channel(channel).name; std::ranges::find(taken, name) == taken.end()) return name;
+    return scalars.empty() ? std::string() : info.channel(scalars.front()).name;
 }
 
 std::size_t addCallout(Session& session, const volume::DatasetInfo& info, CalloutOf of,
@@ -39,6 +43,8 @@ std::size_t addCallout(Session& session, const volume::DatasetInfo& info, Callou
     if (of == CalloutOf::Plane || further) callout.kind = CalloutKind::Slice;
     if (further) callout.channel = parameterToCompare(session, info, of, placeholder);
     session.callouts.push_back(std::move(callout));
+    for (auto& [pane, view] : session.views)
+        if (auto* const volume = std::get_if<VolumeView>(&view)) volume->showCallouts = true;
     return session.callouts.size() - 1;
 }
 

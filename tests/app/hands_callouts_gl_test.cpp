@@ -122,6 +122,21 @@ TEST_F(CalloutHands, TheOneUnderTheMouseIsLargerAndItsMenuRemovesIt) {
     EXPECT_LE(most(), width);
 }
 
+TEST_F(CalloutHands, SmallPanesShowThoseThatHaveRoom) {
+    showVolume(
+        [](Session& edited) {
+            for (int i = 0; i < 7; ++i) addCallout(edited, formula::makeCell().info, CalloutOf::Lens, "here");
+        },
+        {300, 200});
+    const std::vector<ImRect> shown = callouts();
+    EXPECT_GE(shown.size(), 2u);
+    EXPECT_LT(shown.size(), 7u);
+    for (const ImRect& each : shown) EXPECT_TRUE(ImRect(0, 0, 300, 200).Contains(each));
+    showVolume([](Session& edited) { addCallout(edited, formula::makeCell().info, CalloutOf::Lens, "here"); },
+               {140, 110});
+    EXPECT_TRUE(callouts().empty());
+}
+
 TEST_F(CalloutHands, DrawsPlotsAndTablesOfItsPlace) {
     showVolume([](Session& edited) {
         for (const CalloutKind kind : {CalloutKind::Histogram, CalloutKind::Profile, CalloutKind::Numbers}) {

@@ -87,7 +87,7 @@ CalloutPart CalloutsBeside::partOf(std::size_t at) const {
             .state = *cache_.states[own.index],
             .key = pane_ + " callout " + std::to_string(own.index),
             .inner = innerOf(boxOf(at)),
-            .share = 1.0 / 3 / double(std::max<std::size_t>(1, layout_.boxes.size()))};
+            .share = 1.0 / 3 / double(std::max<std::size_t>(1, layout_.boxes.size())) / std::max(1, context_.volumes)};
 }
 
 void CalloutsBeside::hold(bool free) {
