@@ -32,6 +32,7 @@ vis::Lens cuttingLens(vis::Lens like) {
     like.inverted = like.marks = false;
     like.rim = 0;
     like.strength = 1;
+    like.fromTime = like.untilTime = {};
     return like;
 }
 
@@ -47,6 +48,12 @@ std::optional<CalloutPlace> lensPlace(const Session& session, const vis::WorldFr
     if (found < 0 || own == session.lenses.end()) return std::nullopt;
     const vis::PlacedLens& lens = placed[std::size_t(found)];
     CalloutPlace place{.name = name, .color = own->color, .center = lens.center};
+    if (lens.shape == vis::LensShape::Selection) {
+        place.center = glm::dvec3(0);
+        place.half = world.halfSize;
+        place.shape = cuttingLens(*own);
+        return place;
+    }
     place.region = vis::LensRegion{name};
     if (lens.shape == vis::LensShape::Disc) {
         place.half = glm::dvec3(double(own->size.x));

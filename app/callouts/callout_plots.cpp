@@ -27,7 +27,7 @@ std::shared_ptr<const StatisticsResult> statisticsOf(ViewContext& context, const
     const volume::DatasetInfo& info = context.numbers->info();
     const auto region = samplesOfPlace(shown.place, info, context.session.cursor);
     if (!region) {
-        noteIn(shown, "No numbers of tilted planes");
+        noteIn(shown, shown.place.normal ? "No numbers of this plane" : "No numbers of this lens");
         return nullptr;
     }
     BrushedQuery query;

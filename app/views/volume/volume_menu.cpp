@@ -2,14 +2,12 @@
 
 #include "app/callouts/callout_menu.h"
 #include "app/pane/axes3d.h"
+#include "app/pane/plot.h"
 #include "app/tools/brush_list.h"
 #include "app/tools/lens_edit.h"
 #include "app/tools/lens_list.h"
 #include "app/ui/keys.h"
-#include "app/ui/widgets.h"
-#include "volume/sources/time_axis.h"
-
-#include <iterator>
+#include "app/ui/parameter_widget.h"
 
 namespace tessera::app {
 
@@ -17,8 +15,8 @@ namespace {
 
 /// The name of the lens under a pixel, "" if there is none.
 std::string lensAt(const ViewContext& context, const PictureBox& picture, ImVec2 at) {
-    const SpaceFrame space =
-        spaceFrame(picture.min, picture.max(), context.session.camera, context.source->info(), context.session.stretch);
+    const SpaceFrame space = spaceFrame(picture.min, picture.max(), context.session.camera, context.source->info(),
+                                        context.session.stretch);
     const int lens = lensUnder(space, context.session, at);
     return lens < 0 ? std::string() : context.session.lenses[std::size_t(lens)].name;
 }
@@ -60,6 +58,11 @@ void drawVolumeMenu(ViewContext& context, const char* id, VolumeView& view, vis:
     if (ImGui::MenuItem("Parallel projection", "5", &parallel))
         camera.projection = parallel ? vis::Projection::Orthographic : vis::Projection::Perspective;
     drawFocusMenu(context, target, picture, world, at);
+    if (ImGui::BeginMenu("Both eyes")) {
+        ImGui::Dummy({em() * 18, 0});
+        drawDescribed(view.stereo, WidgetContext{.info = &context.source->info()});
+        ImGui::EndMenu();
+    }
     ImGui::Separator();
     const bool along = timeAxisOf(context.session, context.source->info()) != nullptr;
     if (along || !context.session.data.timeAxis) { // positions in a plane over time are not positions in space

@@ -2,11 +2,12 @@
 
 #include "app/pane/view_context.h"
 #include "app/tools/camera_controller.h"
+#include "vis/scene/camera.h"
 
+/// The menu of a picture of the scene.
 namespace tessera::app {
 
-/// The menu of a volume view, if its popup `id` is open: camera, focus, what is placed where it was opened, and what
-/// the view shows. `target`: what was drawn there last, for picking; may be null.
+/// Draws the popup of that name where it is open; `target`: the picture last drawn, null if there is none.
 void drawVolumeMenu(ViewContext& context, const char* id, VolumeView& view, vis::ViewTarget* target,
                     const PictureBox& picture, const vis::WorldFrame& world);
 

@@ -20,6 +20,7 @@
 #include "app/views/volume/link_control.h"
 #include "app/views/volume/probe_marks.h"
 #include "app/views/volume/space_beside.h"
+#include "app/views/volume/stereo_eyes.h"
 #include "app/views/volume/upper_texts.h"
 #include "app/views/volume/volume_menu.h"
 #include "volume/import/files/upright.h"
@@ -32,7 +33,7 @@ namespace tessera::app {
 namespace {
 
 struct VolumeCache : ViewCache {
-    vis::ViewTargetPtr target;
+    EyePictures eyes;
     AsyncScene scene;
     CalloutsCache callouts;
     CameraController hand;
@@ -77,7 +78,8 @@ public:
           triad_(triadRadius(picture.size)), triadAt_(triadMiddle(picture.min, picture.max(), cache.triad, triad_)),
           hasTriad_(view.showGizmo && picture.size.x > em() * 13 && picture.size.y > em() * 9),
           chain_(context, view, picture), pane_(pane),
-          callouts_(context, cache.callouts, view.showCallouts, picture, pane) {}
+          callouts_(context, cache.callouts, view.showCallouts && view.stereo.kind != vis::StereoKind::SideBySide,
+                    picture, pane) {}
 
     void draw() {
         const bool moving = useHands();
@@ -85,37 +87,56 @@ public:
         request.size = {picture_.size.x, picture_.size.y};
         request.moving = (moving || context_.interacting || plays()) && !context_.headless;
         request.wait = context_.headless;
-        if (!cache_.target) cache_.target = context_.renderer.makeTarget();
         vis::Scene scene = cache_.scene.get(context_, pane_, request.moving);
         // In motion a third of the frame time is left to other views.
         const double all = double(scene.render.limits.frameTime) * (request.moving ? 2.0 / 3 : 1);
         request.budgetMs = all / std::max(context_.volumes, 1);
         scene.showBox = view_.showBox && shown_.box && framed();
-        const vis::FrameStatus status = context_.renderer.render(*cache_.target, scene, request);
-        context_.answers.follow(status);
+        const RenderedEyes eyes = renderEyes(context_, cache_.eyes, scene, request, view_.stereo);
 
         const InkOnPaper ink(scene);
+        scene_ = &scene;
         list_ = ImGui::GetWindowDrawList();
-        list_->PushClipRect(picture_.min, max(), true);
-        addPicture(*list_, status.texture, picture_.min, max());
-        const SpaceFrame space = spaceFrame(picture_.min, max(), session_.camera, info_, session_.stretch);
-        drawObjects(space);
-        if (!request.moving) placeCorners(space);
-        const AxisLabels labels = axisLabels(session_, info_);
-        if (const auto chain = chain_.draw(*list_)) taken_.push_back(*chain);
-        drawLegend();
-        if (hasTriad_ && shown_.gizmo) drawTriadAt(labels);
-        if (view_.showScaleBar && shown_.scaleBar && !timeAxisOf(session_, info_)) drawBar();
-        if (shown_.title) drawTexts();
-        drawCentred(equalText(session_, info_));
-        if (!status.complete && !context_.headless && !request.moving) drawProgress(status);
-        callouts_.draw(space, scene, request.moving, taken_);
-        if (view_.showAxes && shown_.axes) drawAxes3d(*list_, space, session_.camera, labels, taken_);
-        list_->PopClipRect();
+        if (view_.stereo.kind != vis::StereoKind::SideBySide) {
+            drawOver(eyes.textures[0], session_.camera, eyes.status, request.moving);
+        } else {
+            const PictureBox whole = picture_;
+            for (const vis::Eye eye : {vis::Eye::Left, vis::Eye::Right}) {
+                picture_ = halfPicture(whole, view_.stereo, eye);
+                taken_.clear();
+                legendLeft_.reset();
+                drawOver(eyes.textures[std::size_t(eye)], vis::eyeCamera(session_.camera, view_.stereo, eye),
+                         eyes.status, request.moving);
+            }
+        }
     }
 
 private:
+    /// A picture and what is drawn over it, as a camera sees it.
+    void drawOver(vis::TextureName texture, const vis::Camera& camera, const vis::FrameStatus& status, bool moving) {
+        list_->PushClipRect(picture_.min, max(), true);
+        addPicture(*list_, texture, picture_.min, max());
+        const SpaceFrame space = spaceFrame(picture_.min, max(), camera, info_, session_.stretch);
+        drawObjects(space);
+        if (!moving) placeCorners(space);
+        const AxisLabels labels = axisLabels(session_, info_);
+        if (const auto chain = chain_.draw(*list_)) taken_.push_back(*chain);
+        drawLegend();
+        if (hasTriad_ && shown_.gizmo && view_.stereo.kind != vis::StereoKind::SideBySide) drawTriadAt(labels);
+        if (view_.showScaleBar && shown_.scaleBar && !timeAxisOf(session_, info_)) drawBar();
+        if (shown_.title) drawTexts();
+        drawCentred(equalText(session_, info_));
+        if (!status.complete && !context_.headless && !moving) drawProgress(status);
+        callouts_.draw(space, *scene_, moving, taken_);
+        if (view_.showAxes && shown_.axes) drawAxes3d(*list_, space, camera, labels, taken_);
+        list_->PopClipRect();
+    }
+
     ImVec2 max() const { return picture_.max(); }
+    /// The picture that the mouse points into, of the left eye in an anaglyph; null while there is none.
+    vis::ViewTarget* picked() const {
+        return view_.stereo.kind == vis::StereoKind::SideBySide ? nullptr : cache_.eyes.targets[0].get();
+    }
     /// Whether box and cross-hair suit what is shown.
     bool framed() const { return view_.drawingBox || !onlyDrawings(session_); }
     bool showsLegend() const { return view_.showLegend && shown_.legend; }
@@ -143,8 +164,8 @@ private:
         const bool onLens = lenses && editLenses(cache_.lens, session_, before, free && cache_.handles.object.empty());
         const bool follows = lenses && followPointer(session_, before, free);
         const bool moving = onHandle || onLens || follows || inCallout ||
-                            handleMouse(context_, cache_.hand, cache_.target.get(), picture_, world_, "menu");
-        drawVolumeMenu(context_, "menu", view_, cache_.target.get(), picture_, world_);
+                            handleMouse(context_, cache_.hand, picked(), picture_, world_, "menu");
+        drawVolumeMenu(context_, "menu", view_, picked(), picture_, world_);
         if (cache_.hand.dragging() || cache_.lens.active || cache_.handles.active) context_.interacting = true;
         return moving;
     }
@@ -297,6 +318,7 @@ private:
     LinkControl chain_;
     const std::string& pane_;
     CalloutsBeside callouts_;
+    const vis::Scene* scene_ = nullptr; ///< of this frame
     ImDrawList* list_ = nullptr;
     std::optional<float> legendLeft_;              ///< of a legend at the bottom, pixels
     std::vector<std::pair<ImVec2, ImVec2>> taken_; ///< corners of what is drawn already, which labels keep clear of
