@@ -40,10 +40,10 @@ protected:
 };
 
 TEST_F(CalloutHands, AMenuEntryMakesOneAndUndoRemovesIt) {
-    showVolume([](Session&) {});
+    showVolume([](Session&) {}, {500, 1200}); // the whole menu has room
     const Session before = session();
     EXPECT_TRUE(callouts().empty());
-    click({60, 380}, 1); // beside the lens: the newest one is meant
+    click({60, 60}, 1); // beside the lens: the newest one is meant
     choose("Callout of lens");
     settle();
     ASSERT_EQ(session().callouts.size(), 1u);

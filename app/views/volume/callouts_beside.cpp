@@ -91,7 +91,7 @@ CalloutPart CalloutsBeside::partOf(std::size_t at) const {
 }
 
 void CalloutsBeside::hold(bool free) {
-    if (context_.headless || !context_.takesInput()) {
+    if (!context_.takesInput()) {
         cache_.held = -1;
         return;
     }
