@@ -103,6 +103,18 @@ bool useSlice(ViewContext& context, const CalloutPart& shown) {
     return shown.state.plane.dragging || context.session.cursor != before;
 }
 
+/// A scale bar in the lower left corner of a picture that is large enough. `height`: of what the camera sees, pixels.
+void drawLength(const ViewContext& context, const PictureBox& box, const vis::Camera& camera, float height) {
+    const volume::DatasetInfo& info = context.source->info();
+    const Session& session = context.session;
+    if (!context.decoration.scaleBar || box.size.x < em() * 8 || timeAxisOf(session, info)) return;
+    const ScaleBar bar = scaleBar(camera, vis::worldFrame(info, session.stretch), session.stretch, info.lengthUnit,
+                                  height, std::min(em() * 6, box.size.x * 0.45f));
+    const float width = std::max(bar.pixels, ImGui::CalcTextSize(bar.text.c_str()).x);
+    if (bar.pixels >= em() && width < box.size.x - em())
+        drawScaleBar(*ImGui::GetWindowDrawList(), {box.min.x + em() * 0.5f, box.max().y - em() * 0.4f}, bar);
+}
+
 void drawScene(ViewContext& context, const CalloutPart& shown, const vis::Scene& view, bool moving) {
     const volume::DatasetInfo& info = context.source->info();
     const vis::WorldFrame world = vis::worldFrame(info, context.session.stretch);
@@ -128,12 +140,16 @@ void drawScene(ViewContext& context, const CalloutPart& shown, const vis::Scene&
         if (const auto at = spaceFrame(box.min, box.max(), scene.camera, info, context.session.stretch)
                                 .pixel(context.session.cursor))
             draw.AddCircle(*at, em() * 0.35f, plotColors().cursor, 0, std::max(1.0f, em() * 0.1f));
-    if (!context.decoration.scaleBar || box.size.x < em() * 9 || timeAxisOf(context.session, info)) return;
-    const ScaleBar length = scaleBar(scene.camera, world, context.session.stretch, info.lengthUnit, box.size.y,
-                                     std::min(em() * 6, box.size.x * 0.45f));
-    const float width = std::max(length.pixels, ImGui::CalcTextSize(length.text.c_str()).x);
-    if (length.pixels >= em() && width < box.size.x - em())
-        drawScaleBar(draw, {box.min.x + em() * 0.5f, box.max().y - em() * 0.4f}, length);
+    drawLength(context, box, scene.camera, box.size.y);
+}
+
+/// As the picture of a slice is seen.
+vis::Camera sliceCamera(const PlanePicture& picture, const vis::WorldFrame& world) {
+    if (picture.axes) return vis::planeCamera(picture.axes->right, picture.axes->up, world);
+    const auto& [at, right, up] = picture.plane;
+    const FlatAxes axes{right, up, {glm::length(right * world.scale), glm::length(up * world.scale)}};
+    const glm::dvec2 middle{(picture.x.lo + picture.x.hi) / 2, (picture.y.lo + picture.y.hi) / 2};
+    return flatCamera(axes, picture.plane.placeAt(middle), picture.y.hi - picture.y.lo, world);
 }
 
 void drawSlice(ViewContext& context, const CalloutPart& shown) {
@@ -141,8 +157,10 @@ void drawSlice(ViewContext& context, const CalloutPart& shown) {
     if (!slice) return;
     drawPicture(context, shown.state.plane, slice->picture, slice->frame, shown.share);
     drawOver(context, shown.state.plane, slice->picture, slice->frame, shown.key);
-    LegendEntry entry = legendOf(context.session, context.source->info(), slice->picture.shows.channel);
-    drawBarBelow(shown.inner, entry);
+    const PlotFrame& plot = slice->frame.plot;
+    drawLength(context, {plot.min, {plot.width(), plot.height()}}, sliceCamera(slice->picture, slice->frame.world),
+               plot.height());
+    drawBarBelow(shown.inner, legendOf(context.session, context.source->info(), slice->picture.shows.channel));
 }
 
 } // namespace

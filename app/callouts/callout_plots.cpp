@@ -181,7 +181,7 @@ void drawCalloutNumbers(ViewContext& context, const CalloutPart& shown) {
     const bool wide = box.size.x > em() * 17; // room for the range beside the mean
     const float middle = wide ? right - em() * 8 : right;
     float y = box.min.y + em() * 0.2f;
-    atRight(middle, y, colors.faint, "mean");
+    atRight(middle, y, colors.faint, result->statistics.level > 0 ? "mean, estimated" : "mean");
     if (wide) atRight(right, y, colors.faint, "range");
     for (std::size_t i = 0; i < channels.size() && i < result->statistics.channels.size(); ++i) {
         y += line;

@@ -213,8 +213,11 @@ void CalloutsBeside::draw(const SpaceFrame& space, const vis::Scene& view, bool 
     for (const auto& [lo, hi] : taken) cache_.taken.push_back({{lo.x, lo.y}, {hi.x, hi.y}});
     place(space, moving);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    for (std::size_t i = 0; i < layout_.boxes.size(); ++i)
-        if (shown_[i].place.normal) drawFrame(list, space, shown_[i]);
+    for (std::size_t i = 0; i < layout_.boxes.size(); ++i) {
+        const auto same = [&](const Shown& other) { return other.place == shown_[i].place; };
+        const auto end = shown_.begin() + std::ptrdiff_t(i);
+        if (shown_[i].place.normal && std::none_of(shown_.begin(), end, same)) drawFrame(list, space, shown_[i]);
+    }
     for (std::size_t i = 0; i < layout_.boxes.size(); ++i) drawLine(list, space, i);
     for (const bool held : {false, true})
         for (std::size_t i = 0; i < layout_.boxes.size(); ++i) {
