@@ -51,6 +51,7 @@ const std::vector<Shipped>& shipped() {
          "data layers timeline transfer volume",
          "",
          {{"volume", Light, 0.86}, {"volume", Warm, 0}, {"volume", Cold, 0}}},
+        {"callouts", "data layers timeline transfer volume", "T [K] 353.17 .. 356.60; O2 [mol/m³] 0.02 .. 6.22", {}},
         // Several pictures beside each other are under test with the view itself.
         {"compareCompression", "compare data layers transfer", "O2 [mol/m³] = 2.5; T [K] 353.17 .. 356.60", {}},
         {"compareLattice", "compare data layers transfer", "rho = 0.5", {}},
