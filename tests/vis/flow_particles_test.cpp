@@ -117,9 +117,9 @@ TEST(FlowParticles, TimelinesMoveOnFromTheirReleases) {
     layer.span = 4;
     layer.steps = 5; // one each second
     const auto placesAt = [&](double moment) {
-        std::map<long, int> places; // of the middles of tubes, in tenths
-        for (const glm::vec3& p : makeParticles(*source, layer, moment, glm::dvec3(1))->mesh.positions)
-            ++places[std::lround(p.x)];
+        std::map<long, int> places; // of the middles of tubes
+        const auto geometry = makeParticles(*source, layer, moment, glm::dvec3(1));
+        for (const glm::vec3& p : geometry->mesh.positions) ++places[std::lround(p.x)];
         std::vector<long> out;
         for (const auto& [x, count] : places) out.push_back(x);
         return out;
