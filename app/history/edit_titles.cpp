@@ -49,12 +49,20 @@ std::string named(const std::string& kind, const std::string& name) {
 
 /// What users call a part of the session where that is not its key; "" = nothing else.
 std::string partWord(std::string_view part) {
-    static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
-        {"stretch", "proportions"}, {"render", "quality"},    {"appearance", "look of the window"},
-        {"lighting", "light"},      {"clips", "clipping"},    {"tone", "tone curve"},
-        {"animation", "animation"}, {"cursor", "cross-hair"}, {"views", "views"},
-        {"layers", "layers"},       {"lenses", "lenses"},     {"paper", "paper"},
-        {"probes", "probes"}};
+    static constexpr std::pair<std::string_view, std::string_view> kWords[] = {{"stretch", "proportions"},
+                                                                               {"render", "quality"},
+                                                                               {"appearance", "look of the window"},
+                                                                               {"lighting", "light"},
+                                                                               {"clips", "clipping"},
+                                                                               {"tone", "tone curve"},
+                                                                               {"animation", "animation"},
+                                                                               {"cursor", "cross-hair"},
+                                                                               {"views", "views"},
+                                                                               {"layers", "layers"},
+                                                                               {"lenses", "lenses"},
+                                                                               {"paper", "paper"},
+                                                                               {"probes", "probes"},
+                                                                               {"depthMask", "shadows of depth"}};
     for (const auto& [key, word] : kWords)
         if (part == key) return std::string(word);
     return {};

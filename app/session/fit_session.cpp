@@ -118,6 +118,8 @@ private:
                 }
             } else if constexpr (std::is_same_v<Member, std::vector<vis::GlyphPart>>) {
                 fitParts(member);
+            } else if constexpr (std::is_same_v<Member, vis::Strokes>) {
+                fitNames(member);
             }
         });
         if constexpr (requires { technique.surfaceValue; })
@@ -149,7 +151,7 @@ private:
             } else if constexpr (std::is_same_v<Member, std::string>) {
                 if (field.refersTo == "channel")
                     replace(member);
-                else if (field.refersTo == "vector" && !member.empty())
+                else if (field.refersTo.ends_with("ector") && !member.empty())
                     fitVector(member);
                 else if (field.refersTo == "optionalChannel" && !known(member))
                     member.clear();

@@ -22,6 +22,7 @@ extern template const ValueType& valueType<LayersView>();
 extern template const ValueType& valueType<LogView>();
 extern template const ValueType& valueType<ObliqueView>();
 extern template const ValueType& valueType<ParallelCoordinatesView>();
+extern template const ValueType& valueType<PiecesView>();
 extern template const ValueType& valueType<Probe>();
 extern template const ValueType& valueType<ProbesView>();
 extern template const ValueType& valueType<ProfileView>();
@@ -64,6 +65,7 @@ extern template const ValueType& valueType<vis::Selection>();
 extern template const ValueType& valueType<vis::SilhouetteEnhancement>();
 extern template const ValueType& valueType<vis::SliceLayer>();
 extern template const ValueType& valueType<vis::SphereRegion>();
+extern template const ValueType& valueType<vis::Strokes>();
 extern template const ValueType& valueType<vis::Tone>();
 extern template const ValueType& valueType<vis::TransferFunction>();
 extern template const ValueType& valueType<vis::TransferRegion>();
@@ -72,6 +74,8 @@ extern template const ValueType& valueType<vis::WarmCool>();
 extern template const ValueType& valueType<volume::DerivedParameter>();
 extern template const ValueType& valueType<volume::DifferenceRecipe>();
 extern template const ValueType& valueType<volume::ExpressionRecipe>();
+extern template const ValueType& valueType<volume::PiecesRecipe>();
 extern template const ValueType& valueType<volume::SmoothRecipe>();
+extern template const ValueType& valueType<volume::UncertaintyRecipe>();
 
 } // namespace tessera::app

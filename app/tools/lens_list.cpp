@@ -56,7 +56,7 @@ std::string layersOf(const Session& session, const std::string& lens) {
 void drawStatistics(ViewContext& context, const std::string& pane, LensStatistics& statistics, const vis::Lens& lens) {
     const volume::DatasetInfo& info = context.numbers->info();
     const std::vector<int> shown = chosenChannels(info, {}, 12);
-    if (shown.empty() || !lens.enabled) return;
+    if (shown.empty() || !vis::activeAt(lens, context.session.time) || !lens.inSpace()) return;
     BrushedQuery query;
     query.channels = shown;
     const std::vector<volume::Channel> channels = info.channels();
@@ -175,7 +175,8 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
     }
     const std::string inside = layersOf(session, lens.name);
     const std::string text = std::string(vis::kLensShapeNames[static_cast<std::size_t>(lens.shape)]) +
-                             (inside.empty() ? "" : "  with " + inside);
+                             (inside.empty() ? "" : "  with " + inside) +
+                             (lens.enabled && !vis::activeAt(lens, session.time) ? ", not at this time" : "");
     if (fittedTreeNode(text, "lens", unfold)) {
         const WidgetContext widgets{.info = &context.source->info()};
         vis::Lens edited = lens;
@@ -185,7 +186,11 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
             edited.name = lens.name;
         }
         lens = edited;
-        if (ImGui::SmallButton("To the cross-hair")) lens.center = session.cursor;
+        if (lens.inSpace()) {
+            if (ImGui::SmallButton("To the cross-hair")) lens.center = session.cursor;
+        } else if (!session.selection.active()) {
+            faintText("No brush is in use: everything is inside.");
+        }
         drawStatistics(context, pane, statistics, lens);
         ImGui::TreePop();
     }

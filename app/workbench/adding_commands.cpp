@@ -81,6 +81,18 @@ void addLayers(SceneChanges& list) {
                        (kind != 3 || !firstVector(workbench.document().info()).empty());
             });
     }
+    list.add(
+        SceneTask::Layers, "Add slice with strokes", "Draw a parameter on a plane, with fine strokes along a vector",
+        "new cut section flow lic line integral convolution texture direction",
+        [&workbench](Session& session, const volume::DatasetInfo& info) {
+            addLayer(session, *workbench.source(), 2);
+            if (auto* const slice = std::get_if<vis::SliceLayer>(&session.layers.back().technique))
+                slice->strokes.vector = firstVector(info);
+        },
+        [&workbench] {
+            return workbench.document().session().layers.size() < kMostLayers &&
+                   !firstVector(workbench.document().info()).empty();
+        });
 }
 
 /// Lenses at the cross-hair.
@@ -96,6 +108,12 @@ void addLenses(SceneChanges& list) {
                  "new magnifier region", [effect = effect](Session& session, const volume::DatasetInfo& info) {
                      addLens(session, info, effect);
                  });
+    list.add(SceneTask::Lenses, "Lens: what is brushed",
+             "Add a lens that is as large as what the brushes select, such as a region or the inside of a surface",
+             "new selection region iso-surface shape", [](Session& session, const volume::DatasetInfo& info) {
+                 addLens(session, info, vis::LensEffect::Replace);
+                 session.lenses.back().shape = vis::LensShape::Selection;
+             });
     list.add(
         SceneTask::Lenses, "Lens: another parameter",
         "Add a lens at the cross-hair in which a parameter not shown yet is drawn instead",

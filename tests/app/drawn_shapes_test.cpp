@@ -260,5 +260,34 @@ TEST(WallScene, HasTheWallAlone) {
         }
 }
 
+TEST(WallScene, HasLensesContoursAndALookWhereAFaceAsksForThem) {
+    vis::Scene scene;
+    scene.layers = {{"", true, vis::VolumeLayer{.channel = "T"}},
+                    {"", true, vis::IsoLayer{.channel = "O2"}, "round"},
+                    {"", true, vis::IsoLayer{.channel = "p"}, "flat"},
+                    {"", false, vis::IsoLayer{.channel = "H2"}, "round"}};
+    scene.lenses = {{.name = "round"}, {.name = "flat", .shape = vis::LensShape::Disc}};
+    scene.selection.brushes.resize(1);
+    const vis::WorldFrame world = vis::worldFrame({glm::dvec3(0), {2, 1, 1}}, glm::dvec3(1));
+    const auto wall = [&](const Wall& of) { return wallScene(scene, "T", of, kCubeFaces[2], world, {}); };
+    const vis::Scene slices = wall({.kind = WallKind::Slice, .contours = 7, .lenses = true});
+    ASSERT_EQ(slices.layers.size(), 2u) << "of the lens that stands in space, what is shown";
+    ASSERT_EQ(slices.lenses.size(), 1u);
+    for (const vis::Layer& layer : slices.layers) {
+        const auto& slice = std::get<vis::SliceLayer>(layer.technique);
+        EXPECT_EQ(slice.contours, 7);
+        EXPECT_EQ(slice.channel, layer.lens.empty() ? "T" : "O2");
+        EXPECT_EQ(layer.brushes, vis::BrushEffect::None);
+    }
+    EXPECT_TRUE(wall({.kind = WallKind::Shadow, .lenses = true}).lenses.empty());
+    const vis::Scene means = wall({.kind = WallKind::Mean, .lenses = true});
+    EXPECT_EQ(means.transfer.at("O2").opacity, means.transfer.at("T").opacity) << "means are opaque";
+    vis::Look look;
+    look.charcoal.emplace();
+    const vis::Scene volume = wall({.kind = WallKind::Volume, .look = look});
+    EXPECT_EQ(std::get<vis::VolumeLayer>(volume.layers[0].technique).look, look);
+    EXPECT_EQ(std::get<vis::VolumeLayer>(volume.layers[0].technique).style, vis::RayStyle::Composite);
+}
+
 } // namespace
 } // namespace tessera::app

@@ -101,6 +101,7 @@ const std::vector<Shipped>& shipped() {
          "data history layers scatterMatrix slices statistics timeline transfer volume",
          "T [K] 353.17 .. 356.60; O2 [mol/m³] 0.02 .. 6.22; O2 [mol/m³] = 2.2; |U| [m/s] 0.00 .. 2.83",
          {{"volume", Cold, 0.0303}, {"volume", Warm, 0.0799}, {"scatterMatrix", Orange, 0}}},
+        {"lic", "data layers slices timeline transfer volume", "O2 [mol/m³] 0.02 .. 6.22; T [K] 353.17 .. 356.60", {}},
         {"overTime",
          "data layers profile profile-2 slices timeline transfer volume",
          "H2 [mol/m³] 24.48 .. 33.11",
@@ -116,6 +117,7 @@ const std::vector<Shipped>& shipped() {
          "data history layers log parallelCoordinates slices timeline transfer volume",
          kTemperature,
          {{"parallelCoordinates", Orange, 0.0136}}},
+        {"pieces", "data layers pieces slices timeline transfer volume", "gas 0.00 .. 1.00", {{"volume", Green, 0.01}}},
         {"shadowCube",
          "data layers shadowCube slices timeline transfer",
          kTemperature,
@@ -250,6 +252,7 @@ TEST_P(Layouts, AreDrawnWithoutOpenGl) {
     if (name == "parallel") panes.push_back("parallelCoordinates");
     if (name == "worlds") panes.push_back("hierarchy");
     if (name == "worthSeeing") panes.push_back("worthSeeing");
+    if (name == "pieces") panes.push_back("pieces");
     PictureMaker without({.openGl = false});
     for (const std::string& pane : panes) {
         if (!session().views.contains(pane)) continue;

@@ -119,6 +119,12 @@ struct FlowLayer {
                         .range = Range{0.5, 20},
                         .applies = self.kind == FlowKind::Streamlines || self.kind == FlowKind::Hedgehogs,
                         .group = kSizes});
+        visit(self.style.halo, FieldInfo{.key = "halo",
+                                         .doc = "Width of a rim in the colour of the ground that hides what runs "
+                                                "behind; 0 = none",
+                                         .unit = "pixel",
+                                         .range = Range{0, 20},
+                                         .group = kSizes});
         visit(self.style.color, FieldInfo{.key = "color",
                                           .doc = "Colour where the parameter has no value (sRGB)",
                                           .range = Range{0, 1},

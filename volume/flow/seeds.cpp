@@ -21,10 +21,7 @@ std::vector<glm::dvec3> onLine(const SeedSettings& s) {
 
 std::vector<glm::dvec3> onPlane(const SeedSettings& s) {
     const glm::dvec3 edges = glm::abs((s.to - s.from) * s.proportions);
-    int across = 0;
-    for (int axis = 1; axis < 3; ++axis)
-        if (edges[axis] < edges[across]) across = axis;
-    const int u = (across + 1) % 3, v = (across + 2) % 3;
+    const int across = thinnestAxis(edges), u = (across + 1) % 3, v = (across + 2) % 3;
     const double ratio = edges[v] > 0 ? edges[u] / edges[v] : double(s.count);
     const int columns = std::clamp(int(std::lround(std::sqrt(s.count * ratio))), 1, s.count);
     const int rows = std::max(1, int(std::lround(double(s.count) / columns)));
@@ -40,6 +37,13 @@ std::vector<glm::dvec3> onPlane(const SeedSettings& s) {
 }
 
 } // namespace
+
+int thinnestAxis(glm::dvec3 edges) {
+    int across = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        if (edges[axis] < edges[across]) across = axis;
+    return across;
+}
 
 std::vector<glm::dvec3> placeSeeds(const SeedSettings& settings, const std::function<double(glm::dvec3)>& weight) {
     if (settings.shape == SeedShape::Line || settings.shape == SeedShape::Plane) {

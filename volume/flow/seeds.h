@@ -17,6 +17,10 @@ enum class SeedShape {
 };
 inline constexpr std::string_view kSeedShapeNames[] = {"line", "plane", "sphere", "random"};
 
+/// The axis that a plane of seeds between two corners lies across: the shortest of these edges, the first of equal
+/// ones.
+int thinnestAxis(glm::dvec3 edges);
+
 struct SeedSettings {
     SeedShape shape = SeedShape::Random;
     glm::dvec3 from{0}, to{1}; ///< corners, physical

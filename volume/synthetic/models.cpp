@@ -2,6 +2,7 @@
 
 #include "volume/base/error.h"
 #include "volume/synthetic/branching.h"
+#include "volume/synthetic/bubbles.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
@@ -31,6 +32,7 @@ constexpr Model kModels[] = {{"fuel-cell", makeFuelCell},
                              {"marschner-lobb", atOnce<makeMarschnerLobb>},
                              {"casting", atOnce<makeCasting>},
                              {"membrane", atOnce<makeMembrane>},
+                             {"bubbles", atOnce<makeBubbles>},
                              {"branching-pulse", atOnce<makeBranching>}};
 
 } // namespace

@@ -71,33 +71,47 @@ struct SlicesView {
     static constexpr std::string_view kType = "slices";
     std::string channel; ///< "" = the channel of the first layer
     ContourSettings lines;
+    vis::Strokes strokes = {};
     bool showReadout = true;
     bool operator==(const SlicesView&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
         ContourSettings::describe(self.lines, visit);
+        visit(self.strokes, vis::strokesField());
         visit(self.showReadout, FieldInfo{"readout", "List the value of every parameter at the cross-hair"});
     }
 };
 DrawView<SlicesView> drawSlicesView;
 
 /// What a face of the cube shows of its parameter, along the axis that the face stands on.
-enum class WallKind { Slice, Mean, Maximum, XRay, Shadow };
-inline constexpr std::string_view kWallKindNames[] = {"slice", "mean", "maximum", "xray", "shadow"};
+enum class WallKind { Slice, Mean, Maximum, XRay, Shadow, Volume };
+inline constexpr std::string_view kWallKindNames[] = {"slice", "mean", "maximum", "xray", "shadow", "volume"};
 
 struct Wall {
     std::string channel = {}; ///< "" = the channel of the first layer
     WallKind kind = WallKind::Mean;
     std::string transfer = {}; ///< name of its own transfer function; "": that of its channel
+    int contours = 0;          ///< contour lines of a slice
+    vis::Look look = {};       ///< of a volume
+    bool lenses = false;       ///< with what lenses do to it
     bool operator==(const Wall&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
-        visit(self.kind, FieldInfo{.key = "kind",
-                                   .doc = "Projection along the axis: slice at the cross-hair, mean, maximum, "
-                                          "absorption by the transfer function, or shadow of the selection",
-                                   .names = kWallKindNames});
+        visit(self.kind,
+              FieldInfo{.key = "kind",
+                        .doc = "Projection along the axis: slice at the cross-hair, mean, maximum, "
+                               "absorption by the transfer function, shadow of the selection, or all of it as a volume",
+                        .names = kWallKindNames});
         visit(self.transfer,
               FieldInfo{"transfer", "Name of the transfer function of this face alone; empty: that of its parameter"});
+        visit(self.contours, FieldInfo{.key = "contours",
+                                       .doc = "Number of contour lines, 0 = none",
+                                       .range = Range{0, 50},
+                                       .applies = self.kind == WallKind::Slice});
+        visit(self.lenses, FieldInfo{.key = "lenses",
+                                     .doc = "Show on this face what lenses do, and what is drawn inside of them",
+                                     .applies = self.kind != WallKind::Shadow});
+        visit(self.look, vis::lookField(self.kind == WallKind::Volume));
     }
 };
 

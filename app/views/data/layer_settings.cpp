@@ -1,4 +1,5 @@
 #include "app/data/first_view.h"
+#include "app/edits/error_band.h"
 #include "app/edits/region_surface.h"
 #include "app/edits/show_parameter.h"
 #include "app/pane/view_parts.h"
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <imgui.h>
 #include <imgui_stdlib.h>
+#include <optional>
 
 /// The settings of one layer. Those whose choices are things of the session have widgets of their own.
 namespace tessera::app {
@@ -63,6 +65,24 @@ void drawOwnFunction(const WidgetContext& widgets, Session& session, vis::Layer&
     setOwnFunction(session, layer.transfer, channel, own, channel + " in " + layerName(layer));
 }
 
+/// A button that shows how far a surface may lie elsewhere, since packed samples are off by up to a bound: that, in the
+/// unit of the parameter, where it is pressed.
+std::optional<double> errorBandButton(const ViewContext& context, const vis::Layer& layer) {
+    const auto* const surface = std::get_if<vis::IsoLayer>(&layer.technique);
+    const auto channel = surface ? context.numbers->info().findChannel(surface->channel) : std::nullopt;
+    if (!channel || isOfErrorBand(layer)) return std::nullopt;
+    const volume::Channel own = context.numbers->info().channel(*channel);
+    const auto bound = packingBound(context.origin, context.numbers->info(), own);
+    if (!bound || !(bound->most > 0)) return std::nullopt;
+    const std::string text = "\u00b1 " + boundWithUnit(bound->most, own.unit);
+    const bool pressed = ImGui::SmallButton(("Show the band of " + text).c_str());
+    if (ImGui::IsItemHovered())
+        tooltip(
+            ("Two translucent surfaces between which this one lies in the data that were packed: " + boundKind(*bound))
+                .c_str());
+    return pressed ? std::optional(bound->most) : std::nullopt;
+}
+
 } // namespace
 
 void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::Layer& layer, const std::string& path) {
@@ -92,12 +112,15 @@ void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::
         }
         return true;
     });
+    const std::optional<double> band = errorBandButton(context, layer);
     const std::string now = vis::shownChannel(layer.technique);
     followChannel(layer.name, before, now);
     if (channelOfFunction(layer.technique) != coloured) {
         dropFormerFunction(context.session, layer, functions, context.source->info());
         followSelectedLayer(context.session);
     }
+    if (band) // last, since layers move
+        return showErrorBand(context.session, static_cast<std::size_t>(&layer - context.session.layers.data()), *band);
     if (now == before) return;
     if (auto* const surface = std::get_if<vis::IsoLayer>(&layer.technique); surface && isLabel(*widgets.info, before)) {
         surface->method = vis::IsoLayer().method;

@@ -114,6 +114,21 @@ void GapPictures::draw(ImDrawList& draw, const ParallelPlot& plot) const {
     }
 }
 
+namespace {
+
+/// A number beside an axis, which bright bands run beneath: its ground lets hardly anything through.
+void drawAxisNumber(ImDrawList& draw, ImVec2 rightTop, const std::string& text) {
+    const PlotColors colors = plotColors();
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const ImVec2 from{std::round(rightTop.x - size.x), std::round(rightTop.y)};
+    const float pad = em() * 0.2f;
+    draw.AddRectFilled({from.x - pad, from.y}, {from.x + size.x + pad, from.y + size.y},
+                       (colors.backdrop & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 240), pad);
+    draw.AddText(from, colors.text, text.c_str());
+}
+
+} // namespace
+
 void drawParallelAxes(ImDrawList& draw, const ParallelPlot& plot) {
     const PlotColors colors = plotColors();
     const float tick = em() * 0.3f;
@@ -131,7 +146,7 @@ void drawParallelAxes(ImDrawList& draw, const ParallelPlot& plot) {
             const float top = std::clamp(y - em() / 2, axis.top - em() * 0.3f, axis.bottom - em() * 0.7f);
             if (text.empty() || (std::abs(top - above) < em() && t > 0)) continue;
             above = top;
-            addTextWithBackdrop(draw, {axis.x - tick - em() * 0.2f, top}, {1, 0}, colors.text, text.c_str());
+            drawAxisNumber(draw, {axis.x - tick - em() * 0.2f, top}, text);
         }
         if (!plot.hasMarks()) continue;
         draw.AddLine({axis.x + 0.5f, plot.markTop}, {axis.x + 0.5f, plot.markBottom}, colors.faint);
