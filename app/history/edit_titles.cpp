@@ -62,7 +62,8 @@ std::string partWord(std::string_view part) {
                                                                                {"lenses", "lenses"},
                                                                                {"paper", "paper"},
                                                                                {"probes", "probes"},
-                                                                               {"depthMask", "shadows of depth"}};
+                                                                               {"depthMask", "shadows of depth"},
+                                                                               {"callouts", "callouts"}};
     for (const auto& [key, word] : kWords)
         if (part == key) return std::string(word);
     return {};
@@ -86,6 +87,8 @@ NamedThing thingAt(const Session& session, const std::vector<std::string>& path)
         if (const auto* layer = at(1, session.layers)) return {layerName(*layer), 2};
     } else if (first == "lenses") {
         if (const auto* lens = at(1, session.lenses)) return {named("lens", lens->name), 2};
+    } else if (first == "callouts") {
+        if (const auto* callout = at(1, session.callouts)) return {"callout of " + callout->placeholder, 2};
     } else if (first == "probes") {
         if (const auto* probe = at(1, session.probes)) return {named("probe", probe->name), 2};
     } else if (first == "selection" && path.size() > 1 && path[1] == "brushes") {

@@ -45,6 +45,10 @@ public:
         }
     }
 
+    void callouts() {
+        for (Callout& callout : session_.callouts) fitNames(callout);
+    }
+
     void brushes() {
         std::erase_if(session_.selection.brushes, [&](const vis::Brush& brush) {
             const std::vector<std::string> names = vis::regionChannels(brush.region);
@@ -70,6 +74,8 @@ public:
         if (info_.times.size() == 1) return; // the views' own times come back with the times
         for (auto& [pane, view] : session_.views)
             if (auto* const volume = std::get_if<VolumeView>(&view); volume && volume->time) fitTime(*volume->time);
+        for (Callout& callout : session_.callouts)
+            if (callout.time) fitTime(*callout.time);
     }
 
 private:
@@ -190,6 +196,7 @@ void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<s
     Fitting fitting(session, info, messages);
     fitting.layers();
     fitting.views();
+    fitting.callouts();
     fitting.brushes();
     fitting.place();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/session/animation.h"
+#include "app/session/callout.h"
 #include "app/session/dock_tree.h"
 #include "app/session/figure_settings.h"
 #include "app/session/views/view_state.h"
@@ -22,7 +23,7 @@
 namespace tessera::app {
 
 /// The schema that is written, and the oldest that is read.
-inline constexpr int kSessionSchema = 5, kOldestSchema = 2;
+inline constexpr int kSessionSchema = 6, kOldestSchema = 2;
 
 /// A data file of a session, identified by path (relative to the session file), size and hash.
 struct DataFile {
@@ -180,6 +181,7 @@ struct Session {
     vis::Lighting lighting;
     std::vector<vis::Clip> clips;
     std::vector<vis::Lens> lenses; ///< a later one lies over those before it
+    std::vector<Callout> callouts;
     vis::Tone tone;
     vis::DepthMask depthMask;
     std::optional<vis::Paper> paper; ///< in place of the theme's background
@@ -221,6 +223,8 @@ struct Session {
         visit(self.lighting, FieldInfo{"lighting", "Lights and surfaces"});
         visit(self.clips, FieldInfo{"clips", "Planes and bodies that cut the data open"});
         visit(self.lenses, FieldInfo{"lenses", "Lenses; a later one lies over an earlier one"});
+        visit(self.callouts,
+              FieldInfo{"callouts", "Details beside the volume, joined to a lens, brush or plane in it"});
         visit(self.tone, FieldInfo{"tone", "Mapping of bright light to the range of the screen"});
         visit(self.depthMask, FieldInfo{"depthMask", "Shadows of depth around what stands before something else"});
         visit(self.paper, FieldInfo{"paper", "Paper behind the picture; none: the background of the theme"});

@@ -3,6 +3,7 @@
 namespace tessera::app {
 
 template const ValueType& valueType<Animation>();
+template const ValueType& valueType<Callout>();
 template const ValueType& valueType<CompareVariant>();
 template const ValueType& valueType<CompareView>();
 template const ValueType& valueType<CurvesView>();

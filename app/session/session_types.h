@@ -7,6 +7,7 @@ namespace tessera::app {
 
 // Types of sessions and of what they are made of. Their descriptions are much to compile: session_types.cpp alone does.
 extern template const ValueType& valueType<Animation>();
+extern template const ValueType& valueType<Callout>();
 extern template const ValueType& valueType<CompareVariant>();
 extern template const ValueType& valueType<CompareView>();
 extern template const ValueType& valueType<CurvesView>();

@@ -1,6 +1,7 @@
 #include "app/tools/lens_list.h"
 
 #include "app/data/first_view.h"
+#include "app/edits/add_callout.h"
 #include "app/edits/add_layer.h"
 #include "app/edits/scene_task.h"
 #include "app/pane/view_parts.h"
@@ -188,9 +189,13 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
         lens = edited;
         if (lens.inSpace()) {
             if (ImGui::SmallButton("To the cross-hair")) lens.center = session.cursor;
+            ImGui::SameLine();
         } else if (!session.selection.active()) {
             faintText("No brush is in use: everything is inside.");
         }
+        if (ImGui::SmallButton("Callout") && takesCallout(session))
+            addCallout(session, context.source->info(), CalloutOf::Lens, lens.name);
+        if (ImGui::IsItemHovered()) tooltip("Show its inside enlarged beside the volume");
         drawStatistics(context, pane, statistics, lens);
         ImGui::TreePop();
     }
@@ -251,6 +256,7 @@ void renameLens(Session& session, std::size_t index, const std::string& name) {
         if (auto* region = std::get_if<vis::LensRegion>(&brush.region);
             region && region->lens == before && !before.empty())
             region->lens = now;
+    renameCallouts(session, CalloutOf::Lens, before, now);
 }
 
 void moveLens(Session& session, std::size_t from, std::size_t to) {
@@ -273,6 +279,7 @@ void removeLens(Session& session, std::size_t index) {
         const auto* region = std::get_if<vis::LensRegion>(&brush.region);
         return region && region->lens == name && !name.empty();
     });
+    removeCallouts(session, CalloutOf::Lens, name);
 }
 
 void drawLensMenu(ViewContext& context) {

@@ -207,6 +207,21 @@ Check turned(bool VolumeView::*member) {
     };
 }
 
+Check calloutAdded(CalloutOf of, CalloutKind kind) {
+    return [of, kind](const Session& before, const Session& after) {
+        ASSERT_EQ(after.callouts.size(), before.callouts.size() + 1);
+        const Callout& added = after.callouts.back();
+        EXPECT_EQ(added.of, of);
+        EXPECT_EQ(added.kind, kind);
+        if (of == CalloutOf::Lens) {
+            EXPECT_EQ(added.placeholder, after.lenses.back().name);
+        }
+        if (of == CalloutOf::Brush) {
+            EXPECT_EQ(added.placeholder, after.selection.brushes.back().name);
+        }
+    };
+}
+
 const std::map<std::string, Check>& checks() {
     static const std::map<std::string, Check> all = [] {
         std::map<std::string, Check> made = {
@@ -275,6 +290,9 @@ const std::map<std::string, Check>& checks() {
                  EXPECT_EQ(std::get<vis::LensRegion>(after.selection.brushes.back().region).lens,
                            before.lenses.back().name);
              }},
+            {"Callout of lens", calloutAdded(CalloutOf::Lens, CalloutKind::Scene)},
+            {"Callout of plane", calloutAdded(CalloutOf::Plane, CalloutKind::Slice)},
+            {"Callout of brush", calloutAdded(CalloutOf::Brush, CalloutKind::Scene)},
             {"Add clip: plane", clipAdded(vis::ClipKind::Plane)},
             {"Add clip: box", clipAdded(vis::ClipKind::Box)},
             {"Add clip: sphere", clipAdded(vis::ClipKind::Sphere)},
@@ -305,6 +323,7 @@ const std::map<std::string, Check>& checks() {
             {"Show scale bar", turned(&VolumeView::showScaleBar)},
             {"Show outlines and handles", turned(&VolumeView::showLenses)},
             {"Show handles of lights", turned(&VolumeView::showLights)},
+            {"Show callouts", turned(&VolumeView::showCallouts)},
             {"Depth of field",
              [](const Session& before, const Session& after) {
                  EXPECT_GT(after.camera.aperture, 0);

@@ -22,7 +22,7 @@ namespace tessera::app {
 struct VolumeView {
     static constexpr std::string_view kType = "volume";
     bool showBox = true, showAxes = true, showLegend = true, showCursor = true, showGizmo = true, showScaleBar = true,
-         showLenses = true, showLights = false;
+         showLenses = true, showLights = false, showCallouts = true;
     bool drawingLegend = false, drawingBox = false;
     bool inSpace = false; ///< where time runs along an axis: the data that are cut
     vis::Stereo stereo;
@@ -51,6 +51,7 @@ struct VolumeView {
         visit(self.showLights, FieldInfo{.key = "lights",
                                          .doc = "Draw lights as arrows and points that can be dragged",
                                          .applies = self.showLenses});
+        visit(self.showCallouts, FieldInfo{"callouts", "Draw callouts: details beside the volume"});
         visit(self.inSpace,
               FieldInfo{"inSpace", "With time along an axis: show the data in space, at the time of the "
                                    "cross-hair, with the outline of the plane that is shown at all times"});

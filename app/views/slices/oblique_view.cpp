@@ -1,3 +1,4 @@
+#include "app/callouts/callout_menu.h"
 #include "app/pane/view_parts.h"
 #include "app/planes/plane_export.h"
 #include "app/planes/plane_pane.h"
@@ -125,7 +126,11 @@ std::optional<PlaneFrame> drawTiltedSlice(ViewContext& context, PlaneState& stat
     if (!(scale > 0)) return std::nullopt;
     const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     PlaneFrame frame = planeFrame(slice, world, info.bounds, room.lo, scale);
-    useMouse(context, state, slice, frame, [&] { drawTiltMenu(session, info, view); });
+    useMouse(context, state, slice, frame, [&] {
+        drawTiltMenu(session, info, view);
+        ImGui::Separator();
+        drawPlaneCalloutEntry(context, pane, info.channel(shows.channel).name);
+    });
     slice = tiltedPlane(session, info, view.normal, shows); // the mouse may have moved the cross-hair or tilted it
     frame = planeFrame(slice, world, info.bounds, room.lo, planeScale(slice, room.lo, room.hi, 0));
     drawPicture(context, state, slice, frame, 2.0 / 3, pane);

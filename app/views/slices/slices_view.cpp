@@ -1,3 +1,4 @@
+#include "app/callouts/callout_menu.h"
 #include "app/pane/axes3d.h"
 #include "app/pane/view_parts.h"
 #include "app/planes/plane_export.h"
@@ -133,7 +134,12 @@ void drawSliceAtCursor(ViewContext& context, PlaneState& state, const std::strin
     PlanePicture slice = now();
     PlaneFrame frame = planeFrame(slice, vis::worldFrame(info, context.session.stretch), info.bounds, room.lo, scale);
     ImGui::PushID(static_cast<int>(index));
-    useMouse(context, state, slice, frame, [&] { drawBrushMenu(context); });
+    useMouse(context, state, slice, frame, [&] {
+        drawBrushMenu(context);
+        ImGui::Separator();
+        drawPlaneCalloutEntry(context, std::string(1, "xyz"[slice.axes->normal]),
+                              context.source->info().channel(slice.shows.channel).name);
+    });
     ImGui::PopID();
     slice = now();
     frame.plane = slice.plane;

@@ -1,7 +1,10 @@
 #include "app/views/volume/volume_menu.h"
 
+#include "app/callouts/callout_menu.h"
+#include "app/pane/axes3d.h"
 #include "app/pane/plot.h"
 #include "app/tools/brush_list.h"
+#include "app/tools/lens_edit.h"
 #include "app/tools/lens_list.h"
 #include "app/ui/keys.h"
 #include "app/ui/parameter_widget.h"
@@ -9,6 +12,14 @@
 namespace tessera::app {
 
 namespace {
+
+/// The name of the lens under a pixel, "" if there is none.
+std::string lensAt(const ViewContext& context, const PictureBox& picture, ImVec2 at) {
+    const SpaceFrame space =
+        spaceFrame(picture.min, picture.max(), context.session.camera, context.source->info(), context.session.stretch);
+    const int lens = lensUnder(space, context.session, at);
+    return lens < 0 ? std::string() : context.session.lenses[std::size_t(lens)].name;
+}
 
 /// Depth of field, and what is in focus: what lies at `at`, where the menu was opened, or the cross-hair.
 void drawFocusMenu(ViewContext& context, vis::ViewTarget* target, const PictureBox& picture,
@@ -59,6 +70,8 @@ void drawVolumeMenu(ViewContext& context, const char* id, VolumeView& view, vis:
         ImGui::Separator();
         drawLensMenu(context);
         ImGui::Separator();
+        drawCalloutEntries(context, lensAt(context, picture, at));
+        ImGui::Separator();
     }
     if (context.session.data.timeAxis) ImGui::MenuItem("Data in space", "", &view.inSpace);
     ImGui::MenuItem("Box", "", &view.showBox);
@@ -71,6 +84,7 @@ void drawVolumeMenu(ViewContext& context, const char* id, VolumeView& view, vis:
     ImGui::MenuItem("Scale bar", "", &view.showScaleBar);
     ImGui::MenuItem("Outlines and handles", "", &view.showLenses);
     ImGui::MenuItem("Handles of lights", "", &view.showLights, view.showLenses);
+    ImGui::MenuItem("Callouts", "", &view.showCallouts);
     if (context.runCommand) {
         ImGui::Separator();
         if (ImGui::MenuItem("Save picture...", "F12")) context.runCommand("Save picture...");

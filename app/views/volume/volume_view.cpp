@@ -13,10 +13,10 @@
 #include "app/tools/lens_outline.h"
 #include "app/tools/profile_line.h"
 #include "app/tools/space_handles.h"
-#include "app/ui/keys.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "app/views/volume/callouts_beside.h"
 #include "app/views/volume/link_control.h"
 #include "app/views/volume/probe_marks.h"
 #include "app/views/volume/space_beside.h"
@@ -35,6 +35,7 @@ namespace {
 struct VolumeCache : ViewCache {
     EyePictures eyes;
     AsyncScene scene;
+    CalloutsCache callouts;
     CameraController hand;
     LensDrag lens;
     HandleDrag handles;
@@ -70,20 +71,23 @@ struct InkOnPaper {
 /// One frame of a picture of the scene in a pane.
 class SpacePicture {
 public:
-    SpacePicture(ViewContext& context, VolumeCache& cache, VolumeView& view, PictureBox picture)
+    SpacePicture(ViewContext& context, VolumeCache& cache, VolumeView& view, PictureBox picture,
+                 const std::string& pane)
         : context_(context), cache_(cache), view_(view), picture_(picture), session_(context.session),
           shown_(context.decoration), info_(context.source->info()), world_(vis::worldFrame(info_, session_.stretch)),
           triad_(triadRadius(picture.size)), triadAt_(triadMiddle(picture.min, picture.max(), cache.triad, triad_)),
           hasTriad_(view.showGizmo && picture.size.x > em() * 13 && picture.size.y > em() * 9),
-          chain_(context, view, picture) {}
+          chain_(context, view, picture), pane_(pane),
+          callouts_(context, cache.callouts, view.showCallouts && view.stereo.kind != vis::StereoKind::SideBySide,
+                    picture, pane) {}
 
-    void draw(const std::string& pane) {
+    void draw() {
         const bool moving = useHands();
         vis::FrameRequest request;
         request.size = {picture_.size.x, picture_.size.y};
         request.moving = (moving || context_.interacting || plays()) && !context_.headless;
         request.wait = context_.headless;
-        vis::Scene scene = cache_.scene.get(context_, pane, request.moving);
+        vis::Scene scene = cache_.scene.get(context_, pane_, request.moving);
         // In motion a third of the frame time is left to other views.
         const double all = double(scene.render.limits.frameTime) * (request.moving ? 2.0 / 3 : 1);
         request.budgetMs = all / std::max(context_.volumes, 1);
@@ -91,6 +95,7 @@ public:
         const RenderedEyes eyes = renderEyes(context_, cache_.eyes, scene, request, view_.stereo);
 
         const InkOnPaper ink(scene);
+        scene_ = &scene;
         list_ = ImGui::GetWindowDrawList();
         if (view_.stereo.kind != vis::StereoKind::SideBySide) {
             drawOver(eyes.textures[0], session_.camera, eyes.status, request.moving);
@@ -122,6 +127,7 @@ private:
         if (shown_.title) drawTexts();
         drawCentred(equalText(session_, info_));
         if (!status.complete && !context_.headless && !moving) drawProgress(status);
+        callouts_.draw(space, *scene_, moving, taken_);
         if (view_.showAxes && shown_.axes) drawAxes3d(*list_, space, camera, labels, taken_);
         list_->PopClipRect();
     }
@@ -140,6 +146,9 @@ private:
     /// Mouse and keys over the picture; true while something moves.
     bool useHands() {
         chain_.take();
+        const SpaceFrame seen = spaceFrame(picture_.min, max(), session_.camera, info_, session_.stretch);
+        const bool inCallout =
+            callouts_.take(seen, !cache_.hand.dragging() && !cache_.lens.active && !cache_.handles.active);
         mouseArea("picture", picture_.size,
                   ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                       ImGuiButtonFlags_MouseButtonRight);
@@ -154,8 +163,8 @@ private:
                               editHandles(cache_.handles, session_, info_, before, free && !forLens, view_.showLights);
         const bool onLens = lenses && editLenses(cache_.lens, session_, before, free && cache_.handles.object.empty());
         const bool follows = lenses && followPointer(session_, before, free);
-        const bool moving =
-            onHandle || onLens || follows || handleMouse(context_, cache_.hand, picked(), picture_, world_, "menu");
+        const bool moving = onHandle || onLens || follows || inCallout ||
+                            handleMouse(context_, cache_.hand, picked(), picture_, world_, "menu");
         drawVolumeMenu(context_, "menu", view_, picked(), picture_, world_);
         if (cache_.hand.dragging() || cache_.lens.active || cache_.handles.active) context_.interacting = true;
         return moving;
@@ -307,6 +316,9 @@ private:
     ImVec2 triadAt_; ///< its middle
     bool hasTriad_;  ///< or would have it: what is left out of a picture keeps its place
     LinkControl chain_;
+    const std::string& pane_;
+    CalloutsBeside callouts_;
+    const vis::Scene* scene_ = nullptr; ///< of this frame
     ImDrawList* list_ = nullptr;
     std::optional<float> legendLeft_;              ///< of a legend at the bottom, pixels
     std::vector<std::pair<ImVec2, ImVec2>> taken_; ///< corners of what is drawn already, which labels keep clear of
@@ -316,7 +328,7 @@ void drawSpace(ViewContext& context, const std::string& pane, VolumeView& view) 
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const PictureBox picture{ImGui::GetCursorScreenPos(), {std::floor(room.x), std::floor(room.y)}};
     if (picture.size.x < 8 || picture.size.y < 8) return;
-    SpacePicture(context, cacheOf<VolumeCache>(context, pane), view, picture).draw(pane);
+    SpacePicture(context, cacheOf<VolumeCache>(context, pane), view, picture, pane).draw();
 }
 
 /// The data that a plane at all times is cut from, through a renderer of their own.
