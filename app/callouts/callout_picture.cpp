@@ -155,7 +155,7 @@ vis::Camera sliceCamera(const PlanePicture& picture, const vis::WorldFrame& worl
 void drawSlice(ViewContext& context, const CalloutPart& shown) {
     const auto slice = calloutSlice(context, shown.callout, shown.place, withoutBar(shown.inner));
     if (!slice) return;
-    drawPicture(context, shown.state.plane, slice->picture, slice->frame, shown.share);
+    drawPicture(context, shown.state.plane, slice->picture, slice->frame, shown.share, shown.key);
     drawOver(context, shown.state.plane, slice->picture, slice->frame, shown.key);
     const PlotFrame& plot = slice->frame.plot;
     drawLength(context, {plot.min, {plot.width(), plot.height()}}, sliceCamera(slice->picture, slice->frame.world),
