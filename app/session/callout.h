@@ -32,7 +32,7 @@ struct Callout {
     volume::SpaceAxis axis = volume::SpaceAxis::Z;
     std::optional<std::vector<vis::Layer>> layers = {}; ///< of its own; none: those of the view
     std::optional<double> time = {};                    ///< of its own; none: that of the view
-    glm::quat turn{1, 0, 0, 0};                    ///< of a scene: from the view's eye axes to its own
+    glm::quat turn{1, 0, 0, 0};                         ///< of a scene: from the view's eye axes to its own
     float zoom = 1;
     std::string name = {};
     bool enabled = true;

@@ -223,7 +223,8 @@ struct Session {
         visit(self.lighting, FieldInfo{"lighting", "Lights and surfaces"});
         visit(self.clips, FieldInfo{"clips", "Planes and bodies that cut the data open"});
         visit(self.lenses, FieldInfo{"lenses", "Lenses; a later one lies over an earlier one"});
-        visit(self.callouts, FieldInfo{"callouts", "Details beside the volume, joined to a lens, brush or plane in it"});
+        visit(self.callouts,
+              FieldInfo{"callouts", "Details beside the volume, joined to a lens, brush or plane in it"});
         visit(self.tone, FieldInfo{"tone", "Mapping of bright light to the range of the screen"});
         visit(self.depthMask, FieldInfo{"depthMask", "Shadows of depth around what stands before something else"});
         visit(self.paper, FieldInfo{"paper", "Paper behind the picture; none: the background of the theme"});

@@ -15,8 +15,8 @@ namespace {
 
 /// The name of the lens under a pixel, "" if there is none.
 std::string lensAt(const ViewContext& context, const PictureBox& picture, ImVec2 at) {
-    const SpaceFrame space = spaceFrame(picture.min, picture.max(), context.session.camera, context.source->info(),
-                                        context.session.stretch);
+    const SpaceFrame space =
+        spaceFrame(picture.min, picture.max(), context.session.camera, context.source->info(), context.session.stretch);
     const int lens = lensUnder(space, context.session, at);
     return lens < 0 ? std::string() : context.session.lenses[std::size_t(lens)].name;
 }
