@@ -19,8 +19,8 @@ struct PlaneContent {
     int channel = 0;            ///< of its colours: index of DatasetInfo::channels()
     ContourSettings lines = {}; ///< of contour lines
     vis::Strokes strokes = {};
-    bool plain = false;         ///< without lenses, brushes, profile lines and cross-hair
-    bool crossed = false;       ///< a plain one with the cross-hair
+    bool plain = false;   ///< without lenses, brushes, profile lines and cross-hair
+    bool crossed = false; ///< a plain one with the cross-hair
 };
 
 struct PlanePicture {

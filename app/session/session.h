@@ -23,7 +23,7 @@
 namespace tessera::app {
 
 /// The schema that is written, and the oldest that is read.
-inline constexpr int kSessionSchema = 5, kOldestSchema = 2;
+inline constexpr int kSessionSchema = 6, kOldestSchema = 2;
 
 /// A data file of a session, identified by path (relative to the session file), size and hash.
 struct DataFile {

@@ -68,7 +68,8 @@ void addLayers(SceneChanges& list) {
         {{"Add volume layer", "Draw a parameter as a volume", "new fog rays rendering"},
          {"Add iso-surface layer", "Draw the surface where a parameter has one value", "new isosurface contour"},
          {"Add slice layer", "Draw a parameter on a plane in space", "new cut section oblique"},
-         {"Add flow layer", "Draw streamlines of a vector", "new streamlines stream lines pathlines arrows vectors"},
+         {"Add flow layer", "Draw streamlines of a vector",
+          "new streamlines stream lines pathlines streaklines timelines speedlines particles arrows vectors"},
          {"Add glyph layer", "Draw figures whose parts show many parameters at once",
           "new glyphs icons stars bars pies jumping jacks superquadrics tensors ellipsoids"}}};
     for (std::size_t kind = 0; kind < kLayers.size(); ++kind) {

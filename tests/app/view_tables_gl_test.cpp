@@ -391,6 +391,20 @@ TEST_F(ViewTables, ASliceMatrixDiffersInWhatIsChosen) {
             EXPECT_NEAR(slice.placeAt({0, 0})[row], session.cursor[row], 1e-12);
             EXPECT_EQ(slice.shows.channel, channels[0]);
         }
+    // "c" is missing in the east, and at no plane of T.
+    const volume::BrickSource& source = *workbench.source();
+    SliceMatrixView across;
+    across.axis = volume::SpaceAxis::X;
+    across.planes = 8;
+    const SliceMatrix planes = sliceMatrix(session, info, across, channels);
+    int empty = 0;
+    for (int column = 0; column < across.planes; ++column) {
+        EXPECT_TRUE(showsValues(source, planes.at(0, column)));
+        empty += showsValues(source, planes.at(1, column)) ? 0 : 1;
+    }
+    EXPECT_TRUE(empty >= 2 && empty <= 6) << empty;
+    EXPECT_TRUE(showsValues(source, planes.at(1, 0))) << "the west has it";
+    EXPECT_FALSE(showsValues(source, planes.at(1, across.planes - 1)));
 }
 
 TEST_F(ViewTables, ThreeSlicesAreReadAtTheCrossHair) {

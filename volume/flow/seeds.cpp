@@ -1,5 +1,7 @@
 #include "volume/flow/seeds.h"
 
+#include "volume/flow/even_lines.h"
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -36,6 +38,17 @@ std::vector<glm::dvec3> onPlane(const SeedSettings& s) {
     return out;
 }
 
+std::vector<glm::dvec3> evenly(const SeedSettings& s, const std::function<double(glm::dvec3)>& weight) {
+    std::vector<glm::dvec3> out =
+        evenLines(
+            [](glm::dvec3 seed) { return std::vector{seed}; },
+            [&](glm::dvec3 place) { return weight(place / s.proportions) > 0; },
+            {.from = s.from * s.proportions, .to = s.to * s.proportions, .separation = s.separation, .most = s.count})
+            .seeds;
+    for (glm::dvec3& seed : out) seed /= s.proportions;
+    return out;
+}
+
 } // namespace
 
 int thinnestAxis(glm::dvec3 edges) {
@@ -51,6 +64,7 @@ std::vector<glm::dvec3> placeSeeds(const SeedSettings& settings, const std::func
         std::erase_if(out, [&](glm::dvec3 place) { return !(weight(place) > 0); });
         return out;
     }
+    if (settings.shape == SeedShape::Even) return evenly(settings, weight);
     std::mt19937_64 random(settings.random);
     // Distributions of the standard library differ between implementations.
     const auto next = [&] { return double(random() >> 11) * 0x1p-53; };

@@ -53,6 +53,19 @@ bool drawRegion(const WidgetContext& widgets, vis::IsoLayer& surface, const volu
     return true;
 }
 
+/// By how much a vector moves particles, above the factor on it.
+void tellSpeed(const vis::FlowLayer& flow, const volume::DatasetInfo& info) {
+    if (!vis::followsParticles(flow.kind)) return;
+    const auto vector = std::ranges::find(info.parameters, flow.vector, &volume::Parameter::name);
+    if (vector == info.parameters.end()) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::TextWrapped("%s", flow.ignoreUnits ? ("A vector of 1 is taken as 1 " + info.lengthFactor() + " per " +
+                                                 (info.timeUnit.empty() ? "time" : info.timeUnit))
+                                                    .c_str()
+                                              : volume::flowUnitsText(info, *vector).c_str());
+    ImGui::PopStyleColor();
+}
+
 /// Whether a layer has a transfer function of its own, which begins as the one that it had.
 void drawOwnFunction(const WidgetContext& widgets, Session& session, vis::Layer& layer) {
     const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
@@ -97,8 +110,10 @@ void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::
         } else if (field.key == "technique") {
             auto* const surface = std::get_if<vis::IsoLayer>(&layer.technique);
             auto* const glyphs = std::get_if<vis::GlyphLayer>(&layer.technique);
+            const auto* const flow = std::get_if<vis::FlowLayer>(&layer.technique);
             const auto kind = glyphs ? glyphs->kind : vis::GlyphKind();
             drawMembers(member.inside(), place.under(field.key), [&](Value, const FieldInfo& own) {
+                if (flow && own.key == "speed") tellSpeed(*flow, *widgets.info);
                 if (glyphs && own.key == "parts") return drawGlyphParts(widgets, *glyphs);
                 return surface && drawRegion(widgets, *surface, *widgets.info, own);
             });

@@ -191,23 +191,39 @@ void drawAxisHistograms(ImDrawList& draw, const ParallelPlot& plot, const Parall
     }
 }
 
-void drawCursorLine(ImDrawList& draw, const ParallelPlot& plot, const Readout& cursor) {
+namespace {
+
+void drawLineOf(ImDrawList& draw, const ParallelPlot& plot, const std::vector<std::optional<double>>& values,
+                ImU32 ink) {
     const PlotColors colors = plotColors();
     std::vector<ImVec2> line;
     std::vector<bool> there, shown;
-    for (const ParallelAxis& axis : plot.axes) {
-        const auto value = cursor.value(axis.channel.name);
+    for (std::size_t a = 0; a < plot.axes.size() && a < values.size(); ++a) {
+        const ParallelAxis& axis = plot.axes[a];
+        const std::optional<double>& value = values[a];
         there.push_back(value.has_value());
         shown.push_back(value && axis.shows(*value));
         line.push_back({axis.x, value ? axis.pixel(*value) : plot.markAt()});
     }
     for (const bool rim : {true, false})
         for (std::size_t i = 0; i < line.size(); ++i) {
-            const ImU32 color = rim ? colors.backdrop : colors.cursor;
+            const ImU32 color = rim ? colors.backdrop : ink;
             if (i + 1 < line.size() && (there[i] || there[i + 1]) && (plot.hasMarks() || (there[i] && there[i + 1])))
                 draw.AddLine(line[i], line[i + 1], color, rim ? 4.0f : 2.0f);
             if (shown[i]) draw.AddCircleFilled(line[i], em() * (rim ? 0.3f : 0.2f), color, 12);
         }
+}
+
+} // namespace
+
+void drawCursorLine(ImDrawList& draw, const ParallelPlot& plot, const Readout& cursor) {
+    std::vector<std::optional<double>> values;
+    for (const ParallelAxis& axis : plot.axes) values.push_back(cursor.value(axis.channel.name));
+    drawLineOf(draw, plot, values, plotColors().cursor);
+}
+
+void drawSampleLine(ImDrawList& draw, const ParallelPlot& plot, const std::vector<std::optional<double>>& values) {
+    drawLineOf(draw, plot, values, plotColors().text);
 }
 
 std::string axisHoverText(const ParallelPlot& plot, std::size_t axis, float y, const ParallelResult& result,

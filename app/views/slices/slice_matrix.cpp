@@ -2,6 +2,7 @@
 
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "volume/reconstruct/probe.h"
 
 #include <algorithm>
 #include <cmath>
@@ -123,6 +124,25 @@ SliceMatrix sliceMatrix(const Session& session, const volume::DatasetInfo& info,
         out.rowNames.push_back(view.rows == view.columns ? "" : nameOfSlice(view.rows, info, row, out.pictures[first]));
     }
     return out;
+}
+
+bool showsValues(const volume::BrickSource& source, const PlanePicture& slice, const Progress& progress) {
+    constexpr int kMost = 256;
+    const auto [right, up, normal] = slice.axes.value_or(SliceAxes{});
+    const glm::ivec3 size = source.info().lattice.size;
+    const auto share = [](int i, int count) { return (i + 0.5) / count; };
+    const int columns = std::clamp(size[right], 1, kMost), rows = std::clamp(size[up], 1, kMost);
+    for (int j = 0; j < rows; ++j) {
+        progress.advance(share(j, rows));
+        std::vector<glm::dvec3> row;
+        for (int i = 0; i < columns; ++i)
+            row.push_back(slice.placeAt({std::lerp(slice.x.lo, slice.x.hi, share(i, columns)),
+                                         std::lerp(slice.y.lo, slice.y.hi, share(j, rows))}));
+        const auto values = volume::probeAlong(source, slice.shows.channel, row, slice.time);
+        if (std::ranges::any_of(values, [](const volume::ProbeValue& value) { return value.nearest.has_value(); }))
+            return true;
+    }
+    return false;
 }
 
 std::string commonText(const Session& session, const volume::DatasetInfo& info, const SliceMatrixView& view,

@@ -2,6 +2,8 @@
 
 #include "app/planes/plane_picture.h"
 #include "app/session/views/view_state_plots.h"
+#include "volume/base/progress.h"
+#include "volume/bricks/brick_source.h"
 
 #include <string>
 #include <vector>
@@ -30,6 +32,10 @@ std::vector<double> matrixTimes(const volume::DatasetInfo& info, int count, doub
 /// row. Directions in which the data have no extent are left out. Names of parameters have their unit.
 SliceMatrix sliceMatrix(const Session& session, const volume::DatasetInfo& info, const SliceMatrixView& view,
                         const std::vector<int>& channels);
+
+/// Whether a slice shows any value: asked where its samples lie, at 256 places along an edge at most. Throws Error,
+/// Cancelled.
+bool showsValues(const volume::BrickSource& source, const PlanePicture& slice, const Progress& progress = {});
 
 /// What all its slices have in common, in words: "T, y to the right, x up, z = 3 mm, t = 0.2 s".
 std::string commonText(const Session& session, const volume::DatasetInfo& info, const SliceMatrixView& view,

@@ -1,6 +1,7 @@
 #include "app/pane/view_parts.h"
 #include "app/planes/plane_export.h"
 #include "app/planes/plane_pane.h"
+#include "app/queries/async_query.h"
 #include "app/ui/number_field.h"
 #include "app/ui/widgets.h"
 #include "app/views/slices/slice_matrix.h"
@@ -14,8 +15,21 @@ namespace {
 
 constexpr std::size_t kMostRows = 6; ///< where the user has not chosen
 
+/// What is asked of each slice: whether it shows a value.
+struct PresenceQuery {
+    struct Slice {
+        int channel = 0;
+        PicturePlane plane;
+        volume::TimePair time;
+        bool operator==(const Slice&) const = default;
+    };
+    std::vector<Slice> slices;
+    bool operator==(const PresenceQuery&) const = default;
+};
+
 struct SliceMatrixCache : ViewCache {
     std::vector<PlaneState> slices; ///< column by column
+    AsyncQuery<PresenceQuery, std::vector<bool>> presence;
 };
 
 /// Where the cells are, pixels.
@@ -92,6 +106,29 @@ void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<
     if (!view.over(MatrixAxis::Parameters) && channels.size() > 1) channels.resize(1);
     exportPlanes(context, tools, "slices", std::move(exported.pictures), std::max(1, exported.columns), channels);
     if (tools.fits(ImGui::CalcTextSize(common.c_str()).x)) drawNote(tools, common);
+}
+
+/// Row by row: whether a slice shows a value; true until that is known.
+std::vector<bool> shownValues(ViewContext& context, SliceMatrixCache& cache, const SliceMatrix& matrix,
+                              const std::string& pane) {
+    PresenceQuery query;
+    for (const PlanePicture& slice : matrix.pictures)
+        query.slices.push_back({slice.shows.channel, slice.plane, slice.time});
+    const auto found = cache.presence.get(
+        context, context.source,
+        {.key = pane + " values", .title = "Values of slices", .quiet = true, .lowPriority = true}, query,
+        [pictures = matrix.pictures](const std::shared_ptr<const volume::BrickSource>& source, const PresenceQuery&,
+                                     int, const Progress& progress) {
+            std::vector<bool> out;
+            const double each = 1 / static_cast<double>(std::max<std::size_t>(1, pictures.size()));
+            for (std::size_t i = 0; i < pictures.size(); ++i)
+                out.push_back(
+                    showsValues(*source, pictures[i],
+                                progress.part(static_cast<double>(i) * each, static_cast<double>(i + 1) * each)));
+            return out;
+        },
+        [](const PresenceQuery&, const PresenceQuery&) { return false; });
+    return found ? *found : std::vector<bool>(matrix.pictures.size(), true);
 }
 
 PlaneFrame cellFrame(const PlanePicture& slice, const vis::WorldFrame& world, const volume::Box& bounds, ImVec2 room) {
@@ -194,6 +231,7 @@ void drawCell(ViewContext& context, PlaneState& state, const PlanePicture& slice
 void drawCells(ViewContext& context, SliceMatrixCache& cache, const MatrixLayout& layout, const SliceMatrix& matrix,
                const vis::WorldFrame& world, const std::string& pane) {
     cache.slices.resize(matrix.pictures.size());
+    const std::vector<bool> values = shownValues(context, cache, matrix, pane);
     const ImVec2 lo = ImGui::GetWindowDrawList()->GetClipRectMin(), hi = ImGui::GetWindowDrawList()->GetClipRectMax();
     for (int column = 0; column < matrix.columns; ++column)
         for (int row = 0; row < matrix.rows; ++row) {
@@ -208,6 +246,9 @@ void drawCells(ViewContext& context, SliceMatrixCache& cache, const MatrixLayout
             const int index = column * matrix.rows + row;
             drawCell(context, cache.slices[static_cast<std::size_t>(index)], slice, frame, index,
                      1 / static_cast<double>(cache.slices.size()), pane);
+            if (!values[static_cast<std::size_t>(row * matrix.columns + column)])
+                addFittedWithBackdrop(*ImGui::GetWindowDrawList(), {at.x + size.x / 2, at.y + (size.y - em()) / 2},
+                                      {0.5f, 0}, plotColors().faint, "no values", size.x);
         }
 }
 
