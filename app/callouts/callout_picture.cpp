@@ -181,7 +181,7 @@ std::string calloutTitle(const ViewContext& context, const Callout& callout, con
         const LengthUnit unit = axisLabels(session, info)[std::size_t(axis)].unit;
         where = place.name + " = " +
                 formatQuantity(session.cursor[axis] * unit.perUnit, unit.name,
-                               tellingLength(info, axis, session.cursor[axis], 0.01) * unit.perUnit);
+                               tellingLength(info, axis, session.cursor, 0.01) * unit.perUnit);
     }
     if (info.times.size() > 1 && !timeAxisOf(session, info)) when = timeValueText(info, session.time);
     if (!callout.name.empty()) what = callout.name, where.clear();
