@@ -112,7 +112,7 @@ std::optional<FlowData> readFlow(const volume::BrickSource& source, const FlowLa
     const volume::TimePair shown = volume::timesAround(info.times, moment);
     if (followsParticles(layer.kind)) {
         data.series = std::make_shared<const volume::VectorSeries>(source, data.parameter, data.level);
-        data.lattice = data.series->frame(std::size_t(shown.nearest()))->x.lattice;
+        data.lattice = data.series->frame(std::size_t(shown.nearest())).x.lattice;
         const double time = volume::timeAt(info.times, shown);
         data.field = [series = data.series, time](glm::dvec3 place) { return series->at(place, time); };
     } else {
