@@ -54,10 +54,9 @@ BrickSamples PieceLabels::brick(const BrickKey& key) const {
                 glm::ivec3 at(atLevel(own.x), atLevel(own.y), atLevel(bcc ? own.z / 2 : own.z));
                 if (bcc && !pairs) at.z = 2 * at.z + own.z % 2;
                 at = glm::min(at, numbers->size - 1);
-                const std::size_t sample =
-                    (std::size_t(at.z) * std::size_t(numbers->size.y) + std::size_t(at.y)) *
-                        std::size_t(numbers->size.x) +
-                    std::size_t(at.x);
+                const std::size_t sample = (std::size_t(at.z) * std::size_t(numbers->size.y) + std::size_t(at.y)) *
+                                               std::size_t(numbers->size.x) +
+                                           std::size_t(at.x);
                 out.values.push_back(float(numbers->numbers[sample]));
                 if (!numbers->present.empty()) out.present.push_back(numbers->present[sample]);
             }

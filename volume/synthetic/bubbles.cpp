@@ -24,8 +24,7 @@ std::vector<Ball> at(double t) {
         balls.push_back({{0.02, 0.02 + side * kSplitting * t / kSplit, 0.016 + 0.01 * t}, kSplitting});
     if (t < kLeave) balls.push_back({{0.008, 0.008, kColumn.z + kLeaving - kRise * (kLeave - t)}, kLeaving});
     if (t > kBirth && t < kDeath)
-        balls.push_back({{0.033, 0.009, 0.03},
-                         6e-3 * std::sin(std::numbers::pi * (t - kBirth) / (kDeath - kBirth))});
+        balls.push_back({{0.033, 0.009, 0.03}, 6e-3 * std::sin(std::numbers::pi * (t - kBirth) / (kDeath - kBirth))});
     return balls;
 }
 
@@ -65,10 +64,8 @@ Dataset makeBubbles(const std::map<std::string, double>& given) {
             for (int j = 0; j < lattice.size.y; ++j)
                 for (int i = 0; i < lattice.size.x; ++i, ++to) {
                     const glm::dvec3 place = lattice.position({i, j, int(k)});
-                    const double share =
-                        std::clamp(0.5 + bubbles::depth(balls, place) / bubbles::kBorder, 0.0, 1.0);
-                    samples[to] =
-                        float(parameter == 0 ? share : 360 - 20 * place.z / bubbles::kColumn.z + 5 * share);
+                    const double share = std::clamp(0.5 + bubbles::depth(balls, place) / bubbles::kBorder, 0.0, 1.0);
+                    samples[to] = float(parameter == 0 ? share : 360 - 20 * place.z / bubbles::kColumn.z + 5 * share);
                 }
         });
         return field;

@@ -18,9 +18,9 @@ inline constexpr glm::dvec3 kColumn{0.04, 0.04, 0.08}; ///< m, from 0
 inline constexpr double kDuration = 1.5;               ///< s
 inline constexpr double kBorder = 2e-3;                ///< m, over which the share of gas goes from 0 to 1
 
-inline constexpr double kMerge = 0.5; ///< s: two touch, and are one from then on
-inline constexpr double kSplit = 0.8; ///< s: one has become two
-inline constexpr double kLeave = 0.6; ///< s: one has left through the top
+inline constexpr double kMerge = 0.5;               ///< s: two touch, and are one from then on
+inline constexpr double kSplit = 0.8;               ///< s: one has become two
+inline constexpr double kLeave = 0.6;               ///< s: one has left through the top
 inline constexpr double kBirth = 0.4, kDeath = 1.2; ///< s: one grows from nothing, and vanishes
 
 struct Ball {
