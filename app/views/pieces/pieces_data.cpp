@@ -167,12 +167,11 @@ std::string piecesNote(const volume::DatasetInfo& info, const PieceGraph& graph,
 std::string pieceText(const volume::DatasetInfo& info, const PieceGraph& graph, const PiecesQuestion& question,
                       std::size_t index) {
     const Piece& piece = graph.pieces[index];
-    std::string text = "piece " + std::to_string(piece.track) + " at " +
-                       timeText(info, info.times[std::size_t(piece.time)]) + ": " +
-                       formatVolume(piece.volume, info.lengthUnit) + ", " + formatCount(piece.samples) +
-                       (piece.samples == 1 ? " sample" : " samples") + "\nmean " + info.channel(question.channel).name +
-                       " " + pieceValue(info, question.channel, piece.mean) + ", centre at " +
-                       placeText(info, piece.centroid);
+    std::string text =
+        "piece " + std::to_string(piece.track) + " at " + timeText(info, info.times[std::size_t(piece.time)]) + ": " +
+        formatVolume(piece.volume, info.lengthUnit) + ", " + formatCount(piece.samples) +
+        (piece.samples == 1 ? " sample" : " samples") + "\nmean " + info.channel(question.channel).name + " " +
+        pieceValue(info, question.channel, piece.mean) + ", centre at " + placeText(info, piece.centroid);
     for (const PieceEvent& event : graph.events)
         if (concerns(graph, event, piece.track)) {
             const bool own = event.from.size() + event.to.size() == 1;
@@ -281,9 +280,8 @@ Plot piecesPlot(const volume::DatasetInfo& info, const PieceGraph& graph, const 
         const Piece& piece = graph.pieces[p];
         if (uses[std::size_t(piece.track)] > 1) continue;
         const double reach = quarterStep(info.times, piece.time), half = halfOf(piece);
-        plot.flows.push_back({{places[p] - glm::dvec2(reach, 0), places[p] + glm::dvec2(reach, 0)},
-                              {half, half},
-                              inkOf(piece.track)});
+        plot.flows.push_back(
+            {{places[p] - glm::dvec2(reach, 0), places[p] + glm::dvec2(reach, 0)}, {half, half}, inkOf(piece.track)});
     }
     if (!look.events) return plot;
     static constexpr std::array<const char*, 6> kNames{"birth", "death", "merge", "split", "enters", "leaves"};

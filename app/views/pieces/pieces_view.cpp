@@ -30,7 +30,8 @@ void chooseSide(ToolRow& tools, const Session& session, PiecesView& view) {
     ImGui::SetNextItemWidth(em() * 8);
     if (ImGui::BeginCombo("##of", kPiecesOfTitles[std::size_t(view.of)])) {
         for (std::size_t i = 0; i < kPiecesOfTitles.size(); ++i) {
-            const bool offered = PiecesOf(i) != PiecesOf::Selected || session.selection.active() || view.of == PiecesOf(i);
+            const bool offered =
+                PiecesOf(i) != PiecesOf::Selected || session.selection.active() || view.of == PiecesOf(i);
             if (offered && ImGui::Selectable(kPiecesOfTitles[i], std::size_t(view.of) == i)) view.of = PiecesOf(i);
         }
         ImGui::EndCombo();
@@ -185,8 +186,8 @@ void drawPiecesView(ViewContext& context, const std::string& pane, PiecesView& v
         exportMenu(context, tools,
                    {.name = "pieces",
                     .figure =
-                        [found, data = source, time = context.session.time, events = view.events](
-                            const PageForm& form, const Progress&) {
+                        [found, data = source, time = context.session.time, events = view.events](const PageForm& form,
+                                                                                                  const Progress&) {
                             return plotPage({piecesPlot(data->info(), found->result, found->query,
                                                         {.events = events, .dark = form.dark, .time = time})},
                                             0, form);

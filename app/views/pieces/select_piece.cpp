@@ -32,9 +32,8 @@ void selectPiece(Session& session, const volume::DatasetInfo& info, const Pieces
     session.animation.playing = false;
     session.cursor = piece.centroid;
     if (!exact || question.of == PiecesOf::Selected) return;
-    volume::DerivedParameter wanted{.name = "pieces of " + info.channel(question.channel).name,
-                                    .unit = "",
-                                    .recipe = recipeOf(info, question)};
+    volume::DerivedParameter wanted{
+        .name = "pieces of " + info.channel(question.channel).name, .unit = "", .recipe = recipeOf(info, question)};
     const std::string base = wanted.name;
     const auto taken = [&] {
         return std::ranges::find(session.data.derived, wanted.name, &volume::DerivedParameter::name) !=
