@@ -133,8 +133,9 @@ std::optional<PlotColumn> placePlots(const std::vector<Plot>& plots, float besid
         column.titled =
             column.titled && ImGui::CalcTextSize(titleWithUnit(plot.y.title, plot.y.unit).c_str()).x < heights.each;
     for (const Plot& plot : plots)
-        if (plot.y.numbered) column.left = std::max(column.left, axisRoom(AxisSide::Left, plot.y.range,
-                                                     column.titled ? TitlePlace::Beside : TitlePlace::Nowhere));
+        if (plot.y.numbered)
+            column.left = std::max(column.left, axisRoom(AxisSide::Left, plot.y.range,
+                                                         column.titled ? TitlePlace::Beside : TitlePlace::Nowhere));
     if (all.x - column.left < em() * 4) {
         drawHint("Not enough room", "Enlarge the pane.");
         return std::nullopt;
@@ -223,9 +224,10 @@ void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool t
     }
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
-    if (plot.y.numbered) drawAxis(draw, frame, AxisSide::Left, titled ? plot.y.title : "", titled ? plot.y.unit : "",
-             frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f,
-             {.grid = grid, .room = left, .ink = plot.y.ink ? seriesInk(*plot.y.ink) : 0});
+    if (plot.y.numbered)
+        drawAxis(draw, frame, AxisSide::Left, titled ? plot.y.title : "", titled ? plot.y.unit : "",
+                 frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f,
+                 {.grid = grid, .room = left, .ink = plot.y.ink ? seriesInk(*plot.y.ink) : 0});
     if (!plot.right) return;
     PlotFrame right = frame;
     right.y = plot.right->range;

@@ -3,6 +3,7 @@
 namespace tessera::app {
 
 template const ValueType& valueType<Animation>();
+template const ValueType& valueType<Callout>();
 template const ValueType& valueType<CompareVariant>();
 template const ValueType& valueType<CompareView>();
 template const ValueType& valueType<CurvesView>();
@@ -61,6 +62,7 @@ template const ValueType& valueType<vis::Selection>();
 template const ValueType& valueType<vis::SilhouetteEnhancement>();
 template const ValueType& valueType<vis::SliceLayer>();
 template const ValueType& valueType<vis::SphereRegion>();
+template const ValueType& valueType<vis::Strokes>();
 template const ValueType& valueType<vis::Tone>();
 template const ValueType& valueType<vis::TransferFunction>();
 template const ValueType& valueType<vis::TransferRegion>();
@@ -71,5 +73,6 @@ template const ValueType& valueType<volume::DifferenceRecipe>();
 template const ValueType& valueType<volume::ExpressionRecipe>();
 template const ValueType& valueType<volume::PiecesRecipe>();
 template const ValueType& valueType<volume::SmoothRecipe>();
+template const ValueType& valueType<volume::UncertaintyRecipe>();
 
 } // namespace tessera::app

@@ -7,6 +7,7 @@ namespace tessera::app {
 
 // Types of sessions and of what they are made of. Their descriptions are much to compile: session_types.cpp alone does.
 extern template const ValueType& valueType<Animation>();
+extern template const ValueType& valueType<Callout>();
 extern template const ValueType& valueType<CompareVariant>();
 extern template const ValueType& valueType<CompareView>();
 extern template const ValueType& valueType<CurvesView>();
@@ -65,6 +66,7 @@ extern template const ValueType& valueType<vis::Selection>();
 extern template const ValueType& valueType<vis::SilhouetteEnhancement>();
 extern template const ValueType& valueType<vis::SliceLayer>();
 extern template const ValueType& valueType<vis::SphereRegion>();
+extern template const ValueType& valueType<vis::Strokes>();
 extern template const ValueType& valueType<vis::Tone>();
 extern template const ValueType& valueType<vis::TransferFunction>();
 extern template const ValueType& valueType<vis::TransferRegion>();
@@ -75,5 +77,6 @@ extern template const ValueType& valueType<volume::DifferenceRecipe>();
 extern template const ValueType& valueType<volume::ExpressionRecipe>();
 extern template const ValueType& valueType<volume::PiecesRecipe>();
 extern template const ValueType& valueType<volume::SmoothRecipe>();
+extern template const ValueType& valueType<volume::UncertaintyRecipe>();
 
 } // namespace tessera::app

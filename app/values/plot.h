@@ -15,6 +15,9 @@
 /// A plot as a value: said once, and drawn on screen and on pages.
 namespace tessera::app {
 
+/// Factor on bright colours, such as those of brushes and lenses, which would vanish on white.
+inline constexpr float kBrightOnWhite = 0.7f;
+
 struct PlotAxis {
     std::string title; ///< with its unit, where that is not stated below
     Range range;

@@ -316,6 +316,14 @@ struct DerivedBricks::Impl {
         return {pieces_->brick(key)};
     }
 
+    Bricks make(const UncertaintyRecipe& recipe, const BrickKey& key) const {
+        BrickSamples out = input(channelOf(recipe.channel), key);
+        out.rest.clear();
+        for (std::size_t i = 0; i < out.values.size(); ++i)
+            if (out.isPresent(i)) recipe.bound ? set(out, i, *recipe.bound) : setAbsent(out, i);
+        return {std::move(out)};
+    }
+
     Bricks make(const PositionRecipe&, const BrickKey& key) const {
         Bricks out(3, empty(key));
         SamplePositions position(source_->grid(), key.index, key.level);

@@ -4,6 +4,7 @@
 #include "volume/derived/other_time.h"
 #include "volume/pieces/find_pieces.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -227,8 +228,25 @@ struct PiecesRecipe {
     }
 };
 
-using DerivedRecipe = std::variant<ExpressionRecipe, MagnitudeRecipe, GradientRecipe, DivergenceRecipe, VorticityRecipe,
-                                   DeviationRecipe, SmoothRecipe, PositionRecipe, TimeRecipe, DifferenceRecipe, PiecesRecipe>;
+/// How far a stored sample may be from the one that was packed: the same wherever the channel is present.
+struct UncertaintyRecipe {
+    static constexpr std::string_view kType = "uncertainty";
+    static constexpr DerivedKind kKind{.title = "Uncertainty of packing",
+                                       .doc = "How far a sample may be from the one that was packed: the bound that "
+                                              "the archive keeps, or the largest error measured when it was packed.",
+                                       .words = "error bound accuracy precision archive",
+                                       .prefix = "uncertainty "};
+    std::string channel;
+    /// In the unit of the channel: from where the data are opened, which alone knows it. Nothing: not known, and absent
+    /// everywhere.
+    std::optional<double> bound = {};
+    bool operator==(const UncertaintyRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) { visit(self.channel, kDerivedFrom); }
+};
+
+using DerivedRecipe =
+    std::variant<ExpressionRecipe, MagnitudeRecipe, GradientRecipe, DivergenceRecipe, VorticityRecipe, DeviationRecipe,
+                 SmoothRecipe, PositionRecipe, TimeRecipe, DifferenceRecipe, PiecesRecipe, UncertaintyRecipe>;
 
 inline constexpr std::size_t kDerivedKinds = std::variant_size_v<DerivedRecipe>;
 

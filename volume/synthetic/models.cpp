@@ -1,6 +1,7 @@
 #include "volume/synthetic/models.h"
 
 #include "volume/base/error.h"
+#include "volume/synthetic/branching.h"
 #include "volume/synthetic/bubbles.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
@@ -31,7 +32,8 @@ constexpr Model kModels[] = {{"fuel-cell", makeFuelCell},
                              {"marschner-lobb", atOnce<makeMarschnerLobb>},
                              {"casting", atOnce<makeCasting>},
                              {"membrane", atOnce<makeMembrane>},
-                             {"bubbles", atOnce<makeBubbles>}};
+                             {"bubbles", atOnce<makeBubbles>},
+                             {"branching-pulse", atOnce<makeBranching>}};
 
 } // namespace
 

@@ -201,7 +201,7 @@ void run(MeshRequest request) {
 void addMeshCommand(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("mesh", "Write an iso-surface as triangles: .ply, .stl, .obj or .vtp by the ending; with "
-                               "--four as tetrahedra in space and time: .vtu");
+                                   "--four as tetrahedra in space and time: .vtu");
     const auto request = std::make_shared<MeshRequest>();
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();
