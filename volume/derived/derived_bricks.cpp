@@ -315,7 +315,6 @@ struct DerivedBricks::Impl {
         if (now_) key.time = now_->nearest();
         return {pieces_->brick(key)};
     }
-
     Bricks make(const UncertaintyRecipe& recipe, const BrickKey& key) const {
         BrickSamples out = input(channelOf(recipe.channel), key);
         out.rest.clear();
@@ -384,7 +383,7 @@ DerivedBricks::DerivedBricks(std::shared_ptr<const BrickSource> source, DerivedR
 
 DerivedBricks::DerivedBricks(const DerivedBricks& stored, const TimePair& now)
     : impl_(std::make_unique<Impl>(stored.impl_->stored_, stored.impl_->recipe_, now)) {
-    impl_->pieces_ = stored.impl_->pieces_; // with what they found
+    impl_->pieces_ = stored.impl_->pieces_;
 }
 
 const std::shared_ptr<const BrickSource>& DerivedBricks::sourceNow() const {
