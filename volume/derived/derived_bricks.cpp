@@ -4,6 +4,7 @@
 #include "volume/bricks/brick_cache.h"
 #include "volume/bricks/magnitude.h"
 #include "volume/bricks/sample_position.h"
+#include "volume/derived/computed_samples.h"
 #include "volume/derived/derived_names.h"
 #include "volume/derived/expression.h"
 #include "volume/derived/input_time.h"
@@ -35,21 +36,6 @@ std::size_t bytesOf(const Bricks& bricks) {
     std::size_t bytes = 0;
     for (const BrickSamples& brick : bricks) bytes += brick.values.size() * 4 + brick.present.size();
     return bytes;
-}
-
-void setAbsent(BrickSamples& samples, std::size_t i) {
-    if (samples.present.empty()) samples.present.assign(samples.values.size(), 1);
-    samples.present[i] = 0;
-    samples.values[i] = 0;
-}
-/// Makes results that are not finite absent.
-void set(BrickSamples& samples, std::size_t i, double value) {
-    if (!samples.rest.empty()) samples.rest[i] = 0;
-    const auto narrow = float(value);
-    if (std::isfinite(narrow))
-        samples.values[i] = narrow;
-    else
-        setAbsent(samples, i);
 }
 
 /// Sums of derivatives; absent as a whole where one of them is.
