@@ -14,7 +14,7 @@ inline void setAbsent(BrickSamples& samples, std::size_t i) {
     samples.values[i] = 0;
 }
 /// Makes results that are not finite absent.
-inline void set(BrickSamples& samples, std::size_t i, double value) {
+inline void setComputed(BrickSamples& samples, std::size_t i, double value) {
     if (!samples.rest.empty()) samples.rest[i] = 0;
     const auto narrow = float(value);
     if (std::isfinite(narrow))
