@@ -1,3 +1,4 @@
+#include "app/pane/shown_plane.h"
 #include "app/tools/brush_edit.h"
 #include "app/tools/handled_lights.h"
 #include "app/tools/handled_planes.h"
@@ -222,31 +223,32 @@ void addProfile(std::vector<HandledObject>& objects, const Session& session, con
     objects.push_back(std::move(object));
 }
 
-/// The plane that is shown at all times, in the data that it is cut from.
+/// The plane in space and time that is shown, in the data that it is cut from: where it lies at the time shown of
+/// these.
 void addCut(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info) {
-    const auto& cut = session.data.timeAxis;
-    if (!cut || timeAxisOf(session, info)) return;
-    const int axis = static_cast<int>(cut->axis), right = (axis + 1) % 3, up = (axis + 2) % 3;
-    const glm::dvec3 lo = info.bounds.lo, size = info.bounds.size();
+    const auto cut = planeShown(session, info);
+    const glm::dvec3 normal = cut ? glm::dvec3(cut->normal) : glm::dvec3(0);
+    if (!cut || normal == glm::dvec3(0)) return; // all of space at one time
+    const double steep = glm::dot(normal, normal);
+    const glm::dvec3 at = -(cut->normal.w * session.time + cut->e) / steep * normal;
+    const std::vector<glm::dvec3> corners = planeSection({unitNormal(normal), at}, info.bounds);
+    if (corners.size() < 3) return; // it is elsewhere at this time
     HandledObject object;
     object.key = "cut";
-    object.name = "shown at all times";
-    object.color = axisColor(axis);
+    object.name = "plane in space and time";
     object.outlined = true;
-    glm::dvec3 middle = info.bounds.center();
-    middle[axis] = lo[axis] + cut->place * size[axis];
-    glm::dvec3 across(0);
-    across[axis] = 1;
-    object.handles = {{.at = middle, .axis = axis, .how = HandleWay::Along, .way = across}};
-    const auto corner = [&](int n) { // around the plane
-        glm::dvec3 at = middle;
-        at[right] = n % 4 == 1 || n % 4 == 2 ? info.bounds.hi[right] : lo[right];
-        at[up] = n % 4 >= 2 ? info.bounds.hi[up] : lo[up];
-        return at;
-    };
-    for (int n = 0; n < 4; ++n) object.lines.emplace_back(corner(n), corner(n + 1));
-    object.move = [axis, lo, size](Session& edited, std::size_t, glm::dvec3 to) {
-        if (size[axis] > 0) edited.data.timeAxis->place = std::clamp((to[axis] - lo[axis]) / size[axis], 0.0, 1.0);
+    int axis = 0;
+    glm::dvec3 middle(0);
+    for (int a = 1; a < 3; ++a)
+        if (std::abs(normal[a]) > std::abs(normal[axis])) axis = a;
+    for (const glm::dvec3& corner : corners) middle += corner / static_cast<double>(corners.size());
+    object.color = axisColor(axis);
+    const glm::dvec3 way = unitNormal(normal);
+    object.handles = {{.at = middle, .axis = axis, .how = HandleWay::Along, .way = way}};
+    for (std::size_t n = 0; n < corners.size(); ++n)
+        object.lines.emplace_back(corners[n], corners[(n + 1) % corners.size()]);
+    object.move = [now = *cut](Session& edited, std::size_t, glm::dvec3 to) {
+        edited.data.timeAxis = volume::movedTo(now, *edited.data.timeAxis, glm::dvec4(to, edited.time));
     };
     objects.push_back(std::move(object));
 }

@@ -160,7 +160,7 @@ TEST_F(OpenTest, TimeAlongAnAxisTakesTheTimeWithItAndBack) {
     DataRef data = session.data;
     data.timeAxis = {volume::SpaceAxis::Z, 0.75};
     Opened along = openWith(opened, data);
-    const double seconds = volume::timePerLength(along.source->info(), *data.timeAxis);
+    const double seconds = along.source->info().plane->timePerLength;
     EXPECT_NEAR(along.document.session.cursor.z * seconds, info.times[2], 1e-12);
     EXPECT_EQ(along.document.session.cursor.y, before.cursor.y);
     const auto origin = [](const Opened& of) { return originText(of.origin, of.numbers->info()); };

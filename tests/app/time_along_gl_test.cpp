@@ -46,7 +46,7 @@ struct TimeAlong : ViewsTest {
 
 TEST_F(TimeAlong, TheCrossHairIsATimeInOneAndAPlaceInTheOther) {
     const volume::DatasetInfo &along = source->info(), &whole = space->info();
-    const double perLength = volume::timePerLength(along, cut);
+    const double perLength = along.plane->timePerLength;
     session.cursor = along.bounds.center();
     session.cursor.z = 0.25 * whole.times.back() / perLength;
     session.selection.brushes = {vis::rangeBrush({{"T", 300, 350, 0}}), vis::Brush{},
@@ -163,15 +163,15 @@ TEST_F(TimeAlong, ProfilesAlongTimeAreInItsUnit) {
     for (std::size_t i = 0; i < 5; ++i)
         EXPECT_NEAR(time.values[i], times.front() + (times.back() - times.front()) * double(i) / 4, 1e-9);
     const std::string csv = csvOf(profileTable(info, session, profile)), word = timeWord(info) + " [s],";
-    EXPECT_TRUE(csv.starts_with(word + titleWithUnit("x", info.lengthUnit) + "," + titleWithUnit("y", info.lengthUnit) +
-                                "," + word))
-        << csv;
+    const auto length = [&](const char* name) { return titleWithUnit(name, info.lengthUnit) + ","; };
+    EXPECT_TRUE(csv.starts_with(word + length("x") + length("y") + length("z") + word)) << csv;
     const LineAxis across = lineAxis(session, info, alongAxis(1));
     EXPECT_EQ(across.title, "distance");
     EXPECT_TRUE(across.unit == "mm" || across.unit == "um" || across.unit == "cm") << across.unit;
     EXPECT_NEAR(across.values[4] / across.values[2], 2, 1e-9);
-    session.data.timeAxis.reset(); // the same numbers as lengths
-    EXPECT_EQ(lineAxis(session, info, profile).title, "distance");
+    volume::DatasetInfo lengths = info; // the same numbers as lengths
+    lengths.plane.reset();
+    EXPECT_EQ(lineAxis(session, lengths, profile).title, "distance");
 }
 
 struct TimeAlongWorkbench : DrawnWorkbench {

@@ -1,38 +1,75 @@
 #include "volume/sources/time_axis.h"
 
 #include "volume/base/error.h"
+#include "volume/reconstruct/probe.h"
 #include "volume/sources/memory_source.h"
 
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 namespace tessera::volume {
 namespace {
 
-/// A scalar 100 x + 10 z + t, absent at x = 0 from t = 3 on, at times 1, 2, 3 and 5; y is 2 thick, z 4.
-std::shared_ptr<const BrickSource> moving(LatticeKind kind) {
+/// A scalar of points (x, y, z, t) as a data set, absent where the formula is NaN.
+Dataset sampled(const Lattice& lattice, const std::vector<double>& times, Range range,
+                const std::function<double(glm::dvec4)>& formula) {
     Dataset data;
-    data.info.lattice.size = {5, 3, 9};
-    data.info.lattice.spacing = {1, 1, 0.5};
-    data.info.bounds = {glm::dvec3(0), glm::dvec3(4, 2, 4)};
-    data.info.times = {1, 2, 3, 5};
+    data.info.lattice = lattice;
+    data.info.bounds = {lattice.position(glm::ivec3(0)), lattice.position(lattice.size - 1)};
+    data.info.times = times;
     data.info.parameters.resize(1);
     data.info.parameters[0].name = "a";
-    data.info.parameters[0].ranges = {{1, 445}};
-    data.read = [lattice = data.info.lattice, times = data.info.times](int, int, int time) {
+    data.info.parameters[0].ranges = {range};
+    data.read = [lattice, times, formula](int, int, int time) {
         Field field = makeField(lattice, ScalarType::F32);
         auto mask = std::make_shared<Mask>(field.count(), std::uint8_t(1));
         for (int z = 0; z < lattice.size.z; ++z)
             for (int y = 0; y < lattice.size.y; ++y)
                 for (int x = 0; x < lattice.size.x; ++x) {
                     const std::size_t i = lattice.index({x, y, z});
-                    const glm::dvec3 at = lattice.position({x, y, z});
-                    field.as<float>()[i] = float(100 * at.x + 10 * at.z + times[std::size_t(time)]);
-                    (*mask)[i] = x == 0 && time >= 2 ? 0 : 1;
+                    const double value = formula(glm::dvec4(lattice.position({x, y, z}), times[std::size_t(time)]));
+                    field.as<float>()[i] = std::isnan(value) ? 0 : float(value);
+                    (*mask)[i] = std::isnan(value) ? 0 : 1;
                 }
         field.mask = mask;
         return field;
     };
-    return makeMemorySource(std::move(data), {.lattice = kind});
+    return data;
+}
+
+/// 5 x 3 x 9 samples; y is 2 thick, z 4.
+Lattice block() {
+    Lattice lattice;
+    lattice.size = {5, 3, 9};
+    lattice.spacing = {1, 1, 0.5};
+    return lattice;
+}
+
+/// A scalar 100 x + 10 z + t, absent at x = 0 from t = 3 on, at times 1, 2, 3 and 5.
+std::shared_ptr<const BrickSource> moving(LatticeKind kind) {
+    return makeMemorySource(
+        sampled(block(), {1, 2, 3, 5}, {1, 445},
+                [](glm::dvec4 p) { return p.x == 0 && p.w >= 3 ? std::nan("") : 100 * p.x + 10 * p.z + p.w; }),
+        {.lattice = kind});
+}
+
+/// Calls visit(sample, its point in space and time, which is solved for from the equation alone).
+void forSamples(const Dataset& made, const std::function<void(std::size_t, glm::dvec4)>& visit) {
+    const SpaceTimePlane& plane = *made.info.plane;
+    const Lattice& grid = made.info.lattice;
+    for (int z = 0; z < grid.size.z; ++z)
+        for (int y = 0; y < grid.size.y; ++y)
+            for (int x = 0; x < grid.size.x; ++x) {
+                glm::dvec4 point(grid.position({x, y, z}), 0);
+                if (plane.solved < 3) point.w = point[plane.solved] * plane.timePerLength;
+                double others = plane.e;
+                for (int a = 0; a < 4; ++a)
+                    if (a != plane.solved) others += plane.normal[a] * point[a];
+                point[plane.solved] = -others / plane.normal[plane.solved];
+                visit(grid.index({x, y, z}), point);
+            }
 }
 
 TEST(TimeAxis, APlaneAtAllTimesKeepsItsValuesAndItsShape) {
@@ -40,18 +77,20 @@ TEST(TimeAxis, APlaneAtAllTimesKeepsItsValuesAndItsShape) {
     EXPECT_EQ(made.info.lattice.size, glm::ivec3(5, 3, 4));
     EXPECT_EQ(made.info.bounds.size(), glm::dvec3(4, 2, 4)) << "as before";
     EXPECT_EQ(made.info.times.size(), 1u);
-    EXPECT_DOUBLE_EQ(timePerLength(made.info, {SpaceAxis::Z, 0.25}), 1) << "4 of time over 4 of length";
+    EXPECT_EQ(made.info.timeAxis(), 2);
+    EXPECT_DOUBLE_EQ(made.info.plane->timePerLength, 1) << "4 of time over 4 of length";
     EXPECT_DOUBLE_EQ(made.info.bounds.lo.z, 1) << "time 1";
 
     const Field values = made.read(0, 0, 0), clock = made.read(1, 0, 0);
-    const double steps[] = {1, 1 + 4.0 / 3, 1 + 8.0 / 3, 5}; // even steps between the first and the last
+    const double times[] = {1, 2, 3, 5}; // those of the file, where they lie
     for (int k = 0; k < 4; ++k)
         for (int x = 0; x < 5; ++x) {
             const std::size_t i = made.info.lattice.index({x, 1, k});
-            EXPECT_NEAR(clock.value(i), steps[k], 1e-6);
+            EXPECT_DOUBLE_EQ(made.info.lattice.position({x, 1, k}).z, times[k]);
+            EXPECT_EQ(clock.value(i), times[k]);
             if (x > 0) {
                 ASSERT_TRUE(values.present(i));
-                EXPECT_NEAR(values.value(i), 100 * x + 10 + steps[k], 1e-4);
+                EXPECT_EQ(values.value(i), float(100 * x + 10 + times[k])) << "no number but the file's";
             } else {
                 EXPECT_EQ(values.present(i), k < 2) << k;
             }
@@ -85,7 +124,136 @@ TEST(TimeAxis, NeedsTimesAndAnExtent) {
     flat.info.times = {0, 1};
     flat.info.parameters.resize(1);
     flat.read = [lattice = flat.info.lattice](int, int, int) { return makeField(lattice, ScalarType::F32); };
-    EXPECT_THROW(withTimeAlong(makeMemorySource(std::move(flat), {.lattice = LatticeKind::CC}), {}), Error);
+    const auto shared = makeMemorySource(std::move(flat), {.lattice = LatticeKind::CC});
+    EXPECT_THROW(withTimeAlong(shared, {}), Error);
+    EXPECT_NO_THROW(withTimeAlong(shared, {.degrees = 0})) << "nothing is exchanged";
+    const auto by = [&](PlaneEquation equation) { return withTimeAlong(source, {.equation = equation}); };
+    EXPECT_THROW(by({0, 0, 0, 0, 1}), Error) << "no normal";
+    EXPECT_THROW(by({0, 0, 0, 1, -6}), Error) << "after the last time";
+    EXPECT_THROW(by({1, 1, 1, 1, 1}), Error) << "no point of it has all coordinates above 0";
+}
+
+// An axis of space is exchanged for time by an angle: 0 is one time, 90 one place, and between the plane moves along
+// the axis; at 45 degrees from one end to the other while all times pass.
+TEST(SpaceTimePlane, AnAngleIsASpeed) {
+    const DatasetInfo info = moving(LatticeKind::CC)->info();
+    for (const double degrees : {-90.0, -60.0, -45.0, -10.0, 0.0, 20.0, 45.0, 70.0, 90.0}) {
+        SCOPED_TRACE(degrees);
+        const SpaceTimePlane plane = planeOf(info, {SpaceAxis::X, 0.25, degrees, 0.75});
+        EXPECT_EQ(plane.solved, std::abs(degrees) > 45 ? 0 : 3);
+        const glm::dvec4 middle(1, 0.3, 2.2, 4); // a quarter of x = 0 .. 4, three quarters of t = 1 .. 5
+        EXPECT_TRUE(plane.holds(middle));
+        const double angle = degrees * std::acos(-1) / 180; // both extents are 4
+        EXPECT_TRUE(plane.holds(middle + glm::dvec4(std::cos(angle), 0, 0, std::sin(angle))));
+        EXPECT_TRUE(plane.holds(middle + glm::dvec4(0, 1, 1, 0))) << "the other axes are in it";
+        EXPECT_FALSE(plane.holds(middle + glm::dvec4(-std::sin(angle), 0, 0, std::cos(angle))));
+        const glm::dvec3 position = plane.positionOf(middle);
+        EXPECT_NEAR(glm::distance(plane.pointAt(position), middle), 0, 1e-12);
+    }
+}
+
+TEST(SpaceTimePlane, IsMovedToAPoint) {
+    const DatasetInfo info = moving(LatticeKind::CC)->info();
+    const glm::dvec4 point(3, 1, 1.5, 2);
+    for (const TimeAxis& from :
+         {TimeAxis{SpaceAxis::Z, 0.2, 90}, TimeAxis{SpaceAxis::Z, 0.2, 30}, TimeAxis{SpaceAxis::X, 0.9, -70, 0.1},
+          TimeAxis{.equation = PlaneEquation{1, -1, 2, 1, -8}}}) {
+        const TimeAxis to = movedTo(planeOf(info, from), from, point);
+        const SpaceTimePlane plane = planeOf(info, to);
+        EXPECT_TRUE(plane.holds(point));
+        EXPECT_EQ(to.degrees, from.degrees);
+        EXPECT_EQ(glm::normalize(plane.normal), glm::normalize(planeOf(info, from).normal)) << "not turned";
+        EXPECT_EQ(to.equation.has_value(), from.equation.has_value());
+    }
+}
+
+// What is linear in space and time has no error of interpolation: every plane shows it, at uneven times and places.
+TEST(SpaceTimePlane, ShowsLinearDataExactlyInEveryDirection) {
+    const auto formula = [](glm::dvec4 p) { return 2 + p.x - 0.5 * p.y + 3 * p.z + 0.25 * p.w; };
+    Lattice uneven = block();
+    uneven.axes.of[2] =
+        std::make_shared<AxisMap>(AxisMap::Of::Points, std::vector<double>{0, 0.1, 0.4, 0.5, 1.5, 2, 3.5, 3.7, 4});
+    uneven = withAxes(uneven, uneven.axes);
+    const std::vector<double> times = {0, 1, 10, 12};
+    for (const Lattice& lattice : {block(), uneven}) {
+        const auto source = makeMemorySource(sampled(lattice, times, {-1, 22}, formula), {.brickSize = 4});
+        for (const TimeAxis& wanted :
+             {TimeAxis{SpaceAxis::X, 0.5, 0, 0.3}, TimeAxis{SpaceAxis::Y, 0.2, 30, 0.1},
+              TimeAxis{SpaceAxis::Z, 0.5, -35}, TimeAxis{SpaceAxis::X, 0.7, 75, 0.9}, TimeAxis{SpaceAxis::Z, 0.4, -80},
+              TimeAxis{.equation = PlaneEquation{1, -1, 0.5, 0.2, -2}},
+              TimeAxis{.equation = PlaneEquation{0.1, 0.4, -0.2, 1, -6}},
+              TimeAxis{.equation = PlaneEquation{0, 3, 1, 0, -4}}}) {
+            const Dataset made = withTimeAlong(source, wanted);
+            const Field values = made.read(0, 0, 0), clock = made.read(1, 0, 0);
+            const DatasetInfo& info = source->info();
+            std::size_t seen = 0;
+            forSamples(made, [&](std::size_t i, glm::dvec4 p) {
+                bool inside = p.w >= -1e-8 && p.w <= 12 + 1e-8;
+                for (int a = 0; a < 3; ++a)
+                    inside = inside && p[a] >= info.bounds.lo[a] - 1e-8 && p[a] <= info.bounds.hi[a] + 1e-8;
+                ASSERT_EQ(values.present(i), inside) << "outside of the data nothing is there";
+                if (!inside) return;
+                ++seen;
+                ASSERT_NEAR(values.value(i), formula(p), 1e-5);
+                ASSERT_NEAR(clock.value(i), p.w, 1e-5);
+            });
+            EXPECT_GT(seen, 10u);
+        }
+    }
+}
+
+// v = t at times 0, 1 and 10: at the second time it is 1, wherever and however the plane is laid through it.
+TEST(SpaceTimePlane, UnevenTimesLieWhereTheyAre) {
+    const auto source = makeMemorySource(sampled(block(), {0, 1, 10}, {0, 10}, [](glm::dvec4 p) { return p.w; }), {});
+    const Dataset at = withTimeAlong(source, {.degrees = 0, .time = 0.1});
+    EXPECT_EQ(at.info.lattice.size, block().size);
+    const Field values = at.read(0, 0, 0);
+    for (std::size_t i = 0; i < values.count(); ++i) ASSERT_EQ(values.value(i), 1);
+    const Dataset along = withTimeAlong(source, {.axis = SpaceAxis::Y, .place = 0.4});
+    ASSERT_NE(along.info.lattice.axes[1], nullptr) << "an uneven axis";
+    const auto shown = makeMemorySource(along, {});
+    for (const double time : {0.0, 0.5, 1.0, 4.0, 10.0}) {
+        const auto value = probe(*shown, {2, time / along.info.plane->timePerLength, 2}, 0).front();
+        ASSERT_TRUE(value.interpolated);
+        EXPECT_NEAR(*value.interpolated, time, 1e-6);
+    }
+}
+
+// A hill that moves along z at a speed: the plane that moves with it shows it at rest at the times of the file, and the
+// mean of what both say between two of them.
+TEST(SpaceTimePlane, ThatMovesWithAWaveShowsItAtRest) {
+    constexpr double kSpeed = 2;
+    const auto wave = [](double from) { return std::exp(-4 * from * from); };
+    Lattice lattice;
+    lattice.size = {3, 3, 81};
+    lattice.spacing = {1, 1, 0.05};
+    const std::vector<double> times = {0, 0.1, 0.35, 0.5, 0.8, 1.2, 1.5, 2};
+    const auto source =
+        makeMemorySource(sampled(lattice, times, {0, 1}, [&](glm::dvec4 p) { return wave(p.z - kSpeed * p.w); }), {});
+    const Dataset crest = withTimeAlong(source, {.equation = PlaneEquation{0, 0, 1, -kSpeed, 0}});
+    EXPECT_EQ(crest.info.lattice.size, lattice.size) << "solved for t: over x, y and z";
+    const Field values = crest.read(0, 0, 0);
+    int stored = 0;
+    forSamples(crest, [&](std::size_t i, glm::dvec4 p) {
+        ASSERT_TRUE(values.present(i));
+        std::size_t later = 1;
+        while (later + 1 < times.size() && times[later] < p.w) ++later;
+        const double from = times[later - 1], to = times[later], weight = (p.w - from) / (to - from);
+        EXPECT_NEAR(values.value(i), (1 - weight) * wave(p.z - kSpeed * from) + weight * wave(p.z - kSpeed * to), 1e-5);
+        stored += values.value(i) > 1 - 1e-6;
+    });
+    EXPECT_EQ(stored, 9 * int(times.size())) << "all of the crest, at every stored time";
+}
+
+TEST(SpaceTimePlane, LabelsAreOfTheNearestSampleAndTime) {
+    Dataset data = sampled(block(), {0, 1, 10}, {0, 12}, [](glm::dvec4 p) { return p.x + (p.w > 5 ? 8 : 0); });
+    data.info.parameters[0].categorical = true;
+    const Dataset made = withTimeAlong(makeMemorySource(std::move(data), {}), {SpaceAxis::X, 0.5, 40});
+    const Field values = made.read(0, 0, 0);
+    forSamples(made, [&](std::size_t i, glm::dvec4 p) {
+        if (!values.present(i) || std::abs(p.w - 5.5) < 1e-6) return;
+        ASSERT_EQ(values.value(i), std::round(p.x) + (p.w > 5.5 ? 8 : 0));
+    });
 }
 
 } // namespace

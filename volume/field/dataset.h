@@ -5,6 +5,7 @@
 #include "volume/field/frame_reader.h"
 #include "volume/field/lattice.h"
 #include "volume/field/parts.h"
+#include "volume/field/space_time_plane.h"
 
 #include <optional>
 #include <string>
@@ -63,13 +64,14 @@ struct DatasetInfo {
     Box bounds; ///< what is shown: the box of the first to the last sample of the CC grid it came from
     std::string lengthUnit = "m"; ///< "" where none is stated
     std::vector<Parameter> parameters;
-    std::vector<double> times{0};     ///< strictly increasing
-    std::string timeName = "time";    ///< what `times` count: time, operating point, voltage, step
-    std::string timeUnit = "s";       ///< of `times`, "" where there is none
-    std::vector<Quantity> quantities; ///< over the times
-    std::string provenance;           ///< where it came from, free text
-    std::vector<std::string> notes;   ///< for the user: how it was read, and what is guessed or left out
-    bool remote = false;              ///< on another machine: reading a sample costs far more than decoding it
+    std::vector<double> times{0};             ///< strictly increasing
+    std::string timeName = "time";            ///< what `times` count: time, operating point, voltage, step
+    std::string timeUnit = "s";               ///< of `times`, "" where there is none
+    std::vector<Quantity> quantities;         ///< over the times
+    std::string provenance;                   ///< where it came from, free text
+    std::vector<std::string> notes;           ///< for the user: how it was read, and what is guessed or left out
+    bool remote = false;                      ///< on another machine: reading a sample costs far more than decoding it
+    std::optional<SpaceTimePlane> plane = {}; ///< that the data are, of others in space and time: of one time
     bool operator==(const DatasetInfo&) const = default;
 
     /// The unit of lengths as a factor of other units: "length" where none is stated, so that a gradient of K has
@@ -77,6 +79,14 @@ struct DatasetInfo {
     std::string lengthFactor() const { return lengthUnit.empty() ? "length" : lengthUnit; }
     /// The unit of what moves with time: m/s; "length" and "time" stand for units that are not stated.
     std::string speedUnit() const { return lengthFactor() + "/" + (timeUnit.empty() ? "time" : timeUnit); }
+    /// The axis of space along which time runs; none in most data.
+    std::optional<int> timeAxis() const {
+        return plane && plane->hasTimeAxis() ? std::optional<int>(plane->solved) : std::nullopt;
+    }
+    /// The place and time of a position of the data, at one of their times: of a plane the point in space and time.
+    glm::dvec4 pointAt(glm::dvec3 position, double time) const {
+        return plane ? plane->pointAt(position) : glm::dvec4(position, time);
+    }
     /// Every channel: parameters in order, for vectors the components, then the magnitude.
     std::vector<Channel> channels() const;
     /// One of them, 0 .. channels().size() - 1; throws std::out_of_range.

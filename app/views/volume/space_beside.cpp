@@ -1,8 +1,9 @@
 #include "app/views/volume/space_beside.h"
 
-#include "volume/sources/time_axis.h"
+#include "app/pane/shown_plane.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <variant>
 
 namespace tessera::app {
@@ -30,11 +31,13 @@ std::shared_ptr<const volume::BrickSource> spaceOfPlane(const ViewContext& conte
 
 Session sessionInSpace(const Session& session, const volume::DatasetInfo& along, const volume::DatasetInfo& space) {
     Session inner = session;
-    const volume::TimeAxis& cut = *session.data.timeAxis;
-    const int axis = static_cast<int>(cut.axis);
-    inner.time =
-        std::clamp(session.cursor[axis] * volume::timePerLength(along, cut), space.times.front(), space.times.back());
-    inner.cursor[axis] = space.bounds.lo[axis] + cut.place * space.bounds.size()[axis];
+    glm::dvec4 point = along.pointAt(session.cursor, session.time);
+    if (const auto cut = planeShown(session, space); cut && along.plane && cut->solved == along.plane->solved)
+        point = cut->pointAt(session.cursor); // as it is being moved
+    point = glm::clamp(point, glm::dvec4(space.bounds.lo, space.times.front()),
+                       glm::dvec4(space.bounds.hi, space.times.back()));
+    inner.cursor = point;
+    inner.time = point.w;
     std::erase_if(inner.layers, [&](const vis::Layer& layer) { return !shownInSpace(layer, space); });
     std::erase_if(inner.selection.brushes, [&](const vis::Brush& brush) {
         return !ofValues(brush) || std::ranges::any_of(vis::regionChannels(brush.region), [&](const std::string& name) {
@@ -50,16 +53,14 @@ Session sessionInSpace(const Session& session, const volume::DatasetInfo& along,
 void takeFromSpace(Session& session, const Session& before, const Session& edited, const volume::DatasetInfo& space) {
     if (!session.data.timeAxis || !edited.data.timeAxis) return;
     session.camera = edited.camera;
-    volume::TimeAxis& cut = *session.data.timeAxis;
-    const int axis = static_cast<int>(cut.axis);
-    cut.place = edited.data.timeAxis->place;
-    for (int a = 0; a < 3; ++a) {
-        if (edited.cursor[a] == before.cursor[a]) continue;
-        if (a != axis)
-            session.cursor[a] = edited.cursor[a];
-        else if (space.bounds.size()[a] > 0)
-            cut.place = std::clamp((edited.cursor[a] - space.bounds.lo[a]) / space.bounds.size()[a], 0.0, 1.0);
-    }
+    session.data.timeAxis = edited.data.timeAxis;
+    if (edited.cursor == before.cursor) return;
+    const glm::dvec4 point(edited.cursor, before.time);
+    if (const auto cut = planeShown(session, space); cut && !cut->holds(point))
+        session.data.timeAxis = volume::movedTo(*cut, *session.data.timeAxis, point);
+    if (const auto cut = planeShown(session, space))
+        for (int a = 0; a < 3; ++a)
+            if (edited.cursor[a] != before.cursor[a] && a != cut->solved) session.cursor[a] = edited.cursor[a];
 }
 
 } // namespace tessera::app

@@ -85,8 +85,8 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, vis::ViewT
         camera.projection = parallel ? vis::Projection::Orthographic : vis::Projection::Perspective;
     drawFocusMenu(context, target, picture, world, at);
     ImGui::Separator();
-    const bool along = timeAxisOf(context.session, context.source->info()) != nullptr;
-    if (along || !context.session.data.timeAxis) { // positions in a plane over time are not positions in space
+    // Positions in a plane of space and time are not positions in space.
+    if (context.source->info().plane || !context.session.data.timeAxis) {
         drawBrushMenu(context);
         ImGui::Separator();
         drawLensMenu(context);
@@ -163,7 +163,7 @@ public:
         if (const auto chain = chain_.draw(*list_)) taken_.push_back(*chain);
         drawLegend();
         if (hasTriad_ && shown_.gizmo) drawTriadAt(labels);
-        if (view_.showScaleBar && shown_.scaleBar && !timeAxisOf(session_, info_)) drawBar();
+        if (view_.showScaleBar && shown_.scaleBar && !info_.timeAxis()) drawBar();
         if (shown_.title) drawTexts();
         drawCentred(equalText(session_, info_));
         if (!status.complete && !context_.headless && !request.moving) drawProgress(status);
