@@ -6,6 +6,7 @@
 #include "app/data/packing_errors.h"
 #include "app/data/picture_lattice.h"
 #include "app/data/picture_session.h"
+#include "app/data/plane_sources.h"
 #include "app/described/within_ranges.h"
 #include "app/user_files/import_memory.h"
 
@@ -266,6 +267,12 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, const OpenR
         } else if (!sources.numbers->info().lattice.isEven()) {
             sources = drawnOn(lattice, sources);
         }
+    }
+    if (layout && layoutCuts(layout->session, data, sources.numbers->info())) {
+        data.timeAxis = layout->session.data.timeAxis;
+        sources = deriveBoth(cutByPlane(underived(sources), data), data.derived, opened.messages);
+    } else if (layout && layout->session.data.timeAxis && !data.timeAxis) {
+        opened.messages.emplace_back(kNoTimesToCut);
     }
     if (errors)
         showErrors(*layout, data, sources, opened.messages);

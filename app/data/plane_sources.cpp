@@ -32,4 +32,8 @@ std::optional<Sources> cutAgain(const Sources& shown, const DataRef& data, std::
     return deriveBoth(cutByPlane(whole, data), data.derived, messages, progress);
 }
 
+bool layoutCuts(const Session& layout, const DataRef& data, const volume::DatasetInfo& info) {
+    return layout.data.timeAxis && !data.timeAxis && !info.plane && info.times.size() > 1;
+}
+
 } // namespace tessera::app

@@ -15,4 +15,10 @@ Sources cutByPlane(const Sources& whole, const DataRef& data);
 std::optional<Sources> cutAgain(const Sources& shown, const DataRef& data, std::vector<std::string>& messages,
                                 const Progress& progress = {});
 
+/// Whether a layout shows a plane in space and time, and these data, shown without one, have the times for it.
+bool layoutCuts(const Session& layout, const DataRef& data, const volume::DatasetInfo& info);
+/// Said where the layout does and the data have one time.
+inline constexpr const char* kNoTimesToCut =
+    "The layout shows a plane in space and time, and these data have one time: they are shown as they are.";
+
 } // namespace tessera::app

@@ -12,6 +12,7 @@
 #include "app/values/selection_text.h"
 #include "app/views/data/derived_list.h"
 #include "app/views/data/glyph_part_list.h"
+#include "app/views/data/plane_setting.h"
 #include "app/views/data/selection_rows.h"
 #include "codec/archive/archive.h"
 #include "codec/container/exactness.h"
@@ -59,7 +60,8 @@ std::string sizeText(const volume::DatasetInfo& info) {
     std::string text;
     for (int axis = 0; axis < 3; ++axis) {
         const double size = info.bounds.size()[axis];
-        const LengthUnit unit = suitableLength(info.lengthUnit, size);
+        const LengthUnit unit = axis == info.timeAxis() ? LengthUnit{info.timeUnit, info.plane->timePerLength}
+                                                        : suitableLength(info.lengthUnit, size);
         text += (axis ? " \u00d7 " : "") + formatQuantity(size * unit.perUnit, unit.name, size * unit.perUnit / 1000);
     }
     return text + (info.lengthUnit.empty() ? ", no unit stated" : "");
@@ -294,6 +296,10 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
         drawSummary(context);
         chooseLengthUnit(context.session, info);
     }
+    if (ImGui::CollapsingHeader("Plane in space and time", context.session.data.timeAxis
+                                                               ? ImGuiTreeNodeFlags_DefaultOpen
+                                                               : ImGuiTreeNodeFlags_None))
+        drawPlaneSetting(context);
     // Above the derived parameters, whose height changes while a formula is edited.
     if (ImGui::CollapsingHeader("Derived parameters", ImGuiTreeNodeFlags_DefaultOpen))
         drawDerivedList(context, cache.derived);

@@ -18,7 +18,9 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "app/views/volume/ink_on_paper.h"
 #include "app/views/volume/link_control.h"
+#include "app/views/volume/plane_in_space.h"
 #include "app/views/volume/probe_marks.h"
 #include "app/views/volume/space_beside.h"
 #include "app/views/volume/upper_texts.h"
@@ -110,23 +112,6 @@ void drawMenu(ViewContext& context, const char* id, VolumeView& view, vis::ViewT
     ImGui::EndPopup();
 }
 
-/// Colours of texts and lines on the paper under a picture, while it lives.
-struct InkOnPaper {
-    bool paper;
-    explicit InkOnPaper(const vis::Scene& scene) : paper(vis::paperOf(scene).has_value()) {
-        if (!paper) return;
-        const glm::vec3 ground = vis::groundColor(scene);
-        const float ink = ground.r + ground.g + ground.b < 1.5f ? 0.9f : 0.12f;
-        ImGui::PushStyleColor(ImGuiCol_WindowBg, {ground.r, ground.g, ground.b, 1});
-        ImGui::PushStyleColor(ImGuiCol_Text, {ink, ink, ink, 1});
-    }
-    InkOnPaper(const InkOnPaper&) = delete;
-    InkOnPaper& operator=(const InkOnPaper&) = delete;
-    ~InkOnPaper() {
-        if (paper) ImGui::PopStyleColor(2);
-    }
-};
-
 /// One frame of a picture of the scene in a pane.
 class SpacePicture {
 public:
@@ -210,6 +195,7 @@ private:
         if (!shown_.outlines) return;
         drawSpaceBrushes(*list_, space, session_.selection);
         drawProfileLines(*list_, space, session_);
+        drawPlaneInSpace(*list_, space, session_, info_);
         if (!view_.showLenses) return;
         drawLenses(*list_, space, session_, cache_.lens.lens);
         if (!context_.takesInput()) return; // nobody can drag there
