@@ -9,6 +9,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "app/values/place_text.h"
 #include "app/values/selection_text.h"
 #include "app/views/data/derived_list.h"
 #include "app/views/data/glyph_part_list.h"
@@ -240,7 +241,7 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
             volume = std::max(volume, channel.inside.volume);
         const glm::dvec3 size = info.bounds.size();
         const double whole = size.x * size.y * size.z;
-        ImGui::TextDisabled("%s%s", formatVolume(volume, info.lengthUnit).c_str(),
+        ImGui::TextDisabled("%s%s", volumeText(info, volume).c_str(),
                             whole > 0 ? (", " + formatShare(volume / whole) + " of the whole box").c_str() : "");
     }
     ImGui::TextDisabled("%s", originText(context, result->query.channels).c_str());

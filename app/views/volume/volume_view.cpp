@@ -3,6 +3,7 @@
 #include "app/pane/corner_legends.h"
 #include "app/pane/inner_view.h"
 #include "app/pane/scale_bar.h"
+#include "app/pane/shown_plane.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/readout.h"
 #include "app/queries/scene_query.h"
@@ -276,13 +277,16 @@ private:
             taken_.push_back(drawScaleBar(*list_, {left, max().y - em() * 0.5f}, bar));
     }
 
-    /// The stretch of the data, that axes are not shown as they lie, and the time shown in exported pictures and where
-    /// it is the view's own: the window has its timeline, but not where time runs along an axis.
+    /// The stretch of the data, that axes are not shown as they lie, what a plane in space and time is, and the time
+    /// shown in exported pictures and where it is the view's own: the window has its timeline, but not for such a
+    /// plane.
     UpperTexts upperTexts() const {
         std::string stretch = stretchText(session_.stretch, info_.lattice.axes), state;
         if (volume::isStraightened(info_.notes))
             stretch += (stretch.empty() ? "" : ", ") + std::string("oblique axes, shown straight");
-        if ((!context_.takesInput() || session_.data.timeAxis || view_.time) && info_.times.size() > 1)
+        if (info_.plane)
+            state = planeText(info_, *info_.plane);
+        else if ((!context_.takesInput() || session_.data.timeAxis || view_.time) && info_.times.size() > 1)
             state = stateText(info_, session_.time, session_.data.axis);
         return upperTextsOf(state, stretch, chain_.left() - picture_.min.x - em());
     }
