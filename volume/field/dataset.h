@@ -7,6 +7,7 @@
 #include "volume/field/parts.h"
 #include "volume/field/space_time_plane.h"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,13 +65,15 @@ struct DatasetInfo {
     Box bounds; ///< what is shown: the box of the first to the last sample of the CC grid it came from
     std::string lengthUnit = "m"; ///< "" where none is stated
     std::vector<Parameter> parameters;
-    std::vector<double> times{0};             ///< strictly increasing
-    std::string timeName = "time";            ///< what `times` count: time, operating point, voltage, step
-    std::string timeUnit = "s";               ///< of `times`, "" where there is none
-    std::vector<Quantity> quantities;         ///< over the times
-    std::string provenance;                   ///< where it came from, free text
-    std::vector<std::string> notes;           ///< for the user: how it was read, and what is guessed or left out
-    bool remote = false;                      ///< on another machine: reading a sample costs far more than decoding it
+    std::vector<double> times{0};     ///< strictly increasing
+    std::string timeName = "time";    ///< what `times` count: time, operating point, voltage, step
+    std::string timeUnit = "s";       ///< of `times`, "" where there is none
+    std::vector<Quantity> quantities; ///< over the times
+    std::string provenance;           ///< where it came from, free text
+    std::vector<std::string> notes;   ///< for the user: how it was read, and what is guessed or left out
+    bool remote = false;              ///< on another machine: reading a sample costs far more than decoding it
+    /// Of positions, for files of data whose axes do not share `lengthUnit`, which is "" then; else all "".
+    std::array<std::string, 3> axisUnits = {};
     std::optional<SpaceTimePlane> plane = {}; ///< that the data are, of others in space and time: of one time
     bool operator==(const DatasetInfo&) const = default;
 

@@ -84,9 +84,9 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
     const std::vector<volume::Channel> channels = info.channels();
     const auto& places = curves.sections.place;
     const LengthUnit length =
-        suitableLength(info.lengthUnit, places.empty() ? 0 : std::abs(places.back() - places.front()));
+        placeUnit(info, curves.query, places.empty() ? 0 : std::abs(places.back() - places.front()));
     Table shown;
-    addColumn(shown, places, {.name = placeTitle(curves.query), .unit = length.name},
+    addColumn(shown, places, {.name = placeTitle(info, curves.query), .unit = length.name},
               [&](double place) { return place * length.perUnit; });
     for (std::size_t c = 0; c < curves.query.channels.size(); ++c)
         for (std::size_t r = 0; r < looks.size(); ++r) {

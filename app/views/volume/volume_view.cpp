@@ -192,7 +192,7 @@ private:
     /// Draws lines and handles in space, besides the scene.
     void drawObjects(const SpaceFrame& space) {
         if (view_.showCursor && shown_.cursor && framed())
-            drawCursor3d(*list_, space, session_.cursor), drawProbes(*list_, space, session_.probes);
+            drawCursor3d(*list_, space, session_.cursor), drawProbes(*list_, space, session_.probes, info_);
         if (!shown_.outlines) return;
         drawSpaceBrushes(*list_, space, session_.selection);
         drawProfileLines(*list_, space, session_);
