@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 namespace tessera::app {
 
@@ -26,8 +28,11 @@ std::optional<glm::dvec3> positionOf(const Probe& probe, const volume::DatasetIn
 }
 
 std::size_t probeHere(const Session& session, const volume::DatasetInfo& info) {
+    const glm::dvec3 same = info.plane ? 1e-9 * info.bounds.size() : glm::dvec3(0); // a position in a plane is computed
     const auto here = [&](const Probe& probe) {
-        return positionOf(probe, info) == session.cursor && (info.plane || probe.time == session.time);
+        const auto at = positionOf(probe, info);
+        return at && glm::all(glm::lessThanEqual(glm::abs(*at - session.cursor), same)) &&
+               (info.plane || probe.time == session.time);
     };
     return std::size_t(std::ranges::find_if(session.probes, here) - session.probes.begin());
 }

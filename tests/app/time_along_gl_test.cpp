@@ -1,4 +1,7 @@
 #include "app/pane/axes3d.h"
+#include "app/pane/shown_plane.h"
+#include "app/queries/probe_values.h"
+#include "app/queries/readout.h"
 #include "app/tools/camera_controller.h"
 #include "app/ui/time_text.h"
 #include "app/views/curves/profile_data.h"
@@ -10,11 +13,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <gmock/gmock.h>
 #include <imgui_internal.h>
 
 /// Data whose times run along an axis, with the data in space beside them.
 namespace tessera::app {
 namespace {
+
+using testing::MatchesRegex;
 
 struct TimeAlong : ViewsTest {
     void SetUp() override {
@@ -172,6 +178,80 @@ TEST_F(TimeAlong, ProfilesAlongTimeAreInItsUnit) {
     volume::DatasetInfo lengths = info; // the same numbers as lengths
     lengths.plane.reset();
     EXPECT_EQ(lineAxis(session, lengths, profile).title, "distance");
+}
+
+TEST_F(TimeAlong, ReadOutsGiveThePlaceAndTheTime) {
+    const volume::DatasetInfo &info = source->info(), &whole = space->info();
+    session.cursor = info.bounds.center(); // along z: half of the time
+    Readout readout;
+    const std::string csv = readoutCsv(session, info, readout);
+    const auto valueOf = [&](const std::string& name, const std::string& unit) {
+        const std::string head = "\n" + name + "," + unit + ",";
+        const auto at = csv.find(head);
+        return at == csv.npos ? std::nan("") : std::stod(csv.substr(at + head.size()));
+    };
+    for (const int axis : {0, 1})
+        EXPECT_NEAR(valueOf(std::string(1, "xyz"[axis]), whole.lengthUnit), session.cursor[axis], 1e-9);
+    EXPECT_NEAR(valueOf("z", whole.lengthUnit), whole.bounds.lo.z + 0.25 * whole.bounds.size().z, 1e-9) << csv;
+    EXPECT_NEAR(valueOf(whole.timeName, whole.timeUnit), 0.5 * (whole.times.front() + whole.times.back()), 1e-9);
+    // What is kept there is a point in space and time: this plane holds it, another does not.
+    const Probe& probe = session.probes[addProbe(session, info)];
+    EXPECT_NEAR(probe.time, valueOf(whole.timeName, whole.timeUnit), 1e-9);
+    const auto temperature = [&](const volume::BrickSource& of) {
+        const auto channel = std::size_t(of.info().findChannel("T").value());
+        return readProbes(of, session.probes).front()[channel].interpolated;
+    };
+    ASSERT_TRUE(temperature(*source));
+    EXPECT_EQ(probeHere(session, info), 0u);
+    const auto other = volume::makeMemorySource(volume::withTimeAlong(space, {volume::SpaceAxis::Z, 0.75}), {});
+    EXPECT_FALSE(temperature(*other));
+    EXPECT_NEAR(*temperature(*source), temperature(*space).value(), 1e-3);
+}
+
+TEST(PlaneText, SaysPlaceTimeAndSpeed) {
+    volume::DatasetInfo info;
+    info.lengthUnit = "mm";
+    info.bounds = {glm::dvec3(0), glm::dvec3(4)};
+    info.times = {0, 2, 8};
+    const auto textOf = [&](const volume::TimeAxis& plane) { return planeText(info, volume::planeOf(info, plane)); };
+    EXPECT_THAT(textOf({volume::SpaceAxis::Z, 0.5}), MatchesRegex("z = 2(\\.0*)? mm at all times"));
+    EXPECT_THAT(textOf({.degrees = 0, .time = 0.25}), MatchesRegex("t = 2(\\.0*)? s everywhere"));
+    EXPECT_THAT(textOf({volume::SpaceAxis::Y, 0.5, 45}),
+                MatchesRegex("y = 0(\\.0*)? mm at t = 0(\\.0*)? s, moving at 0\\.50* mm/s"));
+    EXPECT_THAT(textOf({.equation = volume::PlaneEquation{1, 2, 0, -0.5, -3}}),
+                MatchesRegex("x \\+ 2(\\.0*)? y - 0\\.50* t - 3(\\.0*)? = 0 \\(mm, s\\)"));
+}
+
+TEST_F(TimeAlong, APlaneThatMovesIsDraggedWhereItIsAtTheTimeShown) {
+    cut = {volume::SpaceAxis::Z, 0.5, 60, 0.5};
+    show(volume::makeMemorySource(volume::withTimeAlong(space, cut), {}));
+    session.data.timeAxis = cut;
+    const volume::DatasetInfo& whole = space->info();
+    const volume::Box& box = whole.bounds;
+    session.cursor = source->info().bounds.lo + glm::dvec3(0.5, 0.5, 0.75) * source->info().bounds.size();
+    const double now = whole.times.front() + 0.75 * (whole.times.back() - whole.times.front());
+    const auto shareNow = [&] {
+        const volume::SpaceTimePlane plane = volume::planeOf(whole, *session.data.timeAxis);
+        return (-(plane.normal.w * now + plane.e) / plane.normal.z - box.lo.z) / box.size().z;
+    };
+    ASSERT_NEAR(shareNow(), 0.5 + 0.25 / std::tan(std::acos(-1) / 3), 1e-9);
+    const ImVec2 size{600, 500}, pad = ImGui::GetStyle().WindowPadding, hi{size.x - pad.x, size.y - pad.y};
+    lookAlong(session.camera, vis::StandardView::Right, vis::worldFrame(box, session.stretch),
+              (hi.x - pad.x) / (hi.y - pad.y)); // z lies level
+    const auto goTo = [&](double place, bool down) {
+        glm::dvec3 at = box.center();
+        at.z = box.lo.z + place * box.size().z;
+        mouse = *spaceFrame(pad, hi, session.camera, box, session.stretch).pixel(at);
+        ImGui::GetIO().MouseDown[0] = down;
+        drawCut(view, drawVolumeView, size);
+    };
+    for (int i = 0; i < 2; ++i) drawCut(view, drawVolumeView, size);
+    goTo(shareNow(), false);
+    goTo(shareNow(), true);
+    goTo(0.8, true);
+    goTo(0.8, false);
+    EXPECT_NEAR(shareNow(), 0.8, 0.02);
+    EXPECT_EQ(session.data.timeAxis->degrees, 60) << "not turned";
 }
 
 struct TimeAlongWorkbench : DrawnWorkbench {
