@@ -20,7 +20,8 @@ if(VTK_FOUND)
   add_library(importer STATIC ${import_sources})
   target_link_libraries(importer PUBLIC volume nlohmann_json::nlohmann_json ${VTK_LIBRARIES} TIFF::TIFF PNG::PNG JPEG::JPEG ZLIB::ZLIB
                         pugixml::pugixml BZip2::BZip2 PkgConfig::blosc PkgConfig::lz4 PkgConfig::zstd PkgConfig::lzma ${gdcm_libraries})
-  set_target_properties(importer PROPERTIES UNITY_BUILD_BATCH_SIZE 3) # VTK's headers: less to compile after a change
+  tessera_little_optimised(importer 1)
+  tessera_precompile(importer)
   target_include_directories(importer SYSTEM PUBLIC ${VTK_INCLUDE_DIRS} ${GDCM_INCLUDE_DIR})
   add_executable(tessera-import app/importer/main.cpp)
   target_link_libraries(tessera-import PRIVATE importer)

@@ -15,6 +15,7 @@ endif()
 pybind11_add_module(tessera_python NO_EXTRAS codec/python/module.cpp)
 set_target_properties(tessera_python PROPERTIES OUTPUT_NAME _tessera UNITY_BUILD OFF
                       LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/python/tessera)
+tessera_little_optimised(tessera_python 1)
 target_link_libraries(tessera_python PRIVATE codec nlohmann_json::nlohmann_json)
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/python/tessera)
 file(GLOB python_files CONFIGURE_DEPENDS codec/python/tessera/*.py)

@@ -67,6 +67,16 @@ picture look-context --set '/selection/contextOpacity=0.8' --set /selection/cont
     --set "/layers=[$(volume T '"density":2,"look":{"part":"context","charcoal":{"contrast":0.6}}')]" \
     --set '/transfer/T={"colormap":"inferno","opacity":[[0,0],[0.6,0],[0.7,0.5],[1,0.9]]}' \
     --set '/selection/brushes=[{"name":"hot","region":{"type":"range","intervals":[{"channel":"T","lo":356.2,"hi":400,"soft":0.2}]}}]'
+# Shadows of depth
+for strength in 0 1.5; do
+    "$tessera" render flow -o "$out/depth-shadows-${strength%.*}.png" --view volume --size "$size" --set "$cell" \
+        --set "/depthMask/strength=$strength" --set '/paper={"color":[1,1,1],"tooth":0}' --set '/layers/2/visible=false'
+done
+# Strokes in slices
+base strokes lic --set "$cell"
+picture_of strokes strokes-colors
+picture_of strokes strokes-grey --set /layers/0/technique/strokes/grey=true --set /layers/1/technique/strokes/grey=true
+picture_of strokes strokes-speed --set /layers/0/technique/strokes/bySpeed=true --set /layers/1/technique/strokes/bySpeed=true
 # Drawings of four things in four styles, for print
 drawings() { # drawings BASE NAME LAYERS ARGUMENTS...: LAYERS contain LOOK in place of their look
     local from=$1 name=$2 layers=$3

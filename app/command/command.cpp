@@ -138,6 +138,7 @@ int runCommandLine(int argc, const char* const* argv) {
     addInfoCommand(app);
     addMeshCommand(app);
     addPackCommand(app);
+    addPiecesCommand(app);
     addPlotCommand(app);
     addRenderCommand(app);
     addReplayCommand(app);

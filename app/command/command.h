@@ -34,6 +34,7 @@ void addGenerateCommand(CLI::App& app);
 void addInfoCommand(CLI::App& app);
 void addMeshCommand(CLI::App& app);
 void addPackCommand(CLI::App& app);
+void addPiecesCommand(CLI::App& app);
 void addPlotCommand(CLI::App& app);
 void addRenderCommand(CLI::App& app);
 void addReplayCommand(CLI::App& app);

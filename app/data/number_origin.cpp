@@ -24,10 +24,6 @@ double twoDigitsUp(double value) {
     return std::ceil(value / unit * (1 - 1e-12)) * unit;
 }
 
-std::string boundText(double bound, std::string_view unit) {
-    return formatQuantity(twoDigitsUp(bound), unit);
-}
-
 bool isOriginal(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel) {
     return origin.originals && info.parameters[std::size_t(channel.parameter)].name.ends_with(kOriginal);
 }
@@ -39,13 +35,13 @@ std::string errorText(const NumberOrigin& origin, const volume::DatasetInfo& inf
         if (errorBound(origin, info, channel) > 0) bounded.push_back(channel);
     if (bounded.empty()) return {};
     if (channels.size() == 1)
-        return "error at most " + boundText(errorBound(origin, info, channels.front()), channels.front().unit);
+        return "error at most " + boundWithUnit(errorBound(origin, info, channels.front()), channels.front().unit);
     if (bounded.size() > kMostBounds && origin.maxError > 0)
         return "error at most " + formatNumber(100 * twoDigitsUp(origin.maxError)) + " % of each range";
     std::string text;
     for (const volume::Channel& channel : bounded)
         text += (text.empty() ? "error at most " : ", ") + channel.name + " " +
-                boundText(errorBound(origin, info, channel), channel.unit);
+                boundWithUnit(errorBound(origin, info, channel), channel.unit);
     return text;
 }
 
@@ -117,6 +113,39 @@ double errorBound(const NumberOrigin& origin, const volume::DatasetInfo& info, c
         squares += boundOf(extent) * boundOf(extent);
     }
     return origin.ofComponents && channel.magnitude ? std::sqrt(squares) : ofAll(boundOf(widest));
+}
+
+std::optional<PackingBound> packingBound(const NumberOrigin& origin, const volume::DatasetInfo& info,
+                                         const volume::Channel& channel) {
+    const bool derived = origin.parameters >= 0 && channel.parameter >= origin.parameters;
+    if (derived || info.parameters[std::size_t(channel.parameter)].categorical) return std::nullopt;
+    if (!origin.stored || isOriginal(origin, info, channel)) return PackingBound{};
+    if (origin.discarded) return std::nullopt;
+    const bool measured = std::size_t(channel.parameter) < origin.resampleErrors.size();
+    const bool resampled = origin.lattice != "CC";
+    const double most = errorBound(origin, info, channel);
+    if (resampled && !measured && !(most > 0)) return std::nullopt; // exact on its lattice, which has other samples
+    return PackingBound{most, measured, resampled && !measured};
+}
+
+std::string boundKind(const PackingBound& bound) {
+    if (bound.measured) return "largest error measured when packed";
+    return bound.beforeLattice ? "bound of the archive, without resampling" : "bound of the archive";
+}
+
+std::string boundWithUnit(double bound, std::string_view unit) {
+    return formatQuantity(twoDigitsUp(bound), unit);
+}
+
+std::vector<volume::DerivedParameter> withBounds(std::vector<volume::DerivedParameter> derived,
+                                                 const NumberOrigin& origin, const volume::DatasetInfo& info) {
+    for (volume::DerivedParameter& each : derived)
+        if (auto* const uncertainty = std::get_if<volume::UncertaintyRecipe>(&each.recipe)) {
+            const auto channel = info.findChannel(uncertainty->channel);
+            const auto bound = channel ? packingBound(origin, info, info.channel(*channel)) : std::nullopt;
+            uncertainty->bound = bound ? std::optional(bound->most) : std::nullopt;
+        }
+    return derived;
 }
 
 bool boundsNumbers(const NumberOrigin& origin) {

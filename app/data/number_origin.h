@@ -1,9 +1,12 @@
 #pragma once
 
+#include "volume/derived/derived_recipe.h"
 #include "volume/flow/computed_numbers.h"
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tessera::volume {
@@ -21,7 +24,7 @@ struct NumberOrigin {
     bool mesh = false;      ///< resampled from cells that are no regular grid
     bool stored = false;    ///< read from an archive, or from data packed as one
     bool originals = false; ///< parameters called "... as computed" are what the others were before they were packed
-    std::string lattice;    ///< of the stored samples: "CC", "BCC", "D4*" or "one grid of D4*"
+    std::string lattice;    ///< of the stored samples: "CC", "BCC", "D4*", "one grid of D4*" or "one grid of BCC"
     bool exact = true;      ///< every stored sample is what was packed
     double maxError = 0;    ///< else: bound on the error of a sample, relative to the largest range of its components
     double absError = 0;    ///< in the unit of the parameter; 0 = no such bound
@@ -50,6 +53,27 @@ NumberOrigin storedOrigin(const codec::Metadata& metadata, bool unpacked = false
 
 /// Bound on the error of a sample of a channel, in its unit; 0 where it is exact.
 double errorBound(const NumberOrigin& origin, const volume::DatasetInfo& info, const volume::Channel& channel);
+
+/// How far samples of a channel may be from those that were packed, in its unit.
+struct PackingBound {
+    double most = 0;            ///< 0 = exact
+    bool measured = false;      ///< the largest error found when it was packed; else what the archive keeps to
+    bool beforeLattice = false; ///< without what resampling to the lattice of the archive has changed
+    bool operator==(const PackingBound&) const = default;
+};
+/// Nothing where it is not known: of derived parameters, of labels, and of archives without bricks of little
+/// importance.
+std::optional<PackingBound> packingBound(const NumberOrigin& origin, const volume::DatasetInfo& info,
+                                         const volume::Channel& channel);
+/// What kind of bound it is: "bound of the archive", "largest error measured when packed", "bound of the archive,
+/// without resampling".
+std::string boundKind(const PackingBound& bound);
+/// "0.05 K": rounded up to two digits.
+std::string boundWithUnit(double bound, std::string_view unit);
+
+/// The derived parameters with the bounds that those called uncertainties are made of, as their data have them.
+std::vector<volume::DerivedParameter> withBounds(std::vector<volume::DerivedParameter> derived,
+                                                 const NumberOrigin& origin, const volume::DatasetInfo& info);
 
 /// Whether that bound holds for numbers of regions, too: every sample of the source is there, in its own region.
 bool boundsNumbers(const NumberOrigin& origin);

@@ -20,6 +20,7 @@
 #include "volume/sources/labelled_source.h"
 #include "volume/sources/memory_source.h"
 #include "volume/sources/originals.h"
+#include "volume/sources/sublattice_source.h"
 #include "volume/synthetic/models.h"
 #include "volume/system/free_memory.h"
 
@@ -143,6 +144,8 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     const std::string& path = data.files[0].absolutePath;
     const auto archive = std::make_shared<const codec::Archive>(path, data.remote);
     const bool unpacks = data.grids == ShownGrids::Both && canUnpack(*archive);
+    const bool oneGrid = data.grids != ShownGrids::Both && !archive->metadata().alternating &&
+                         archive->grid().lattice.kind == volume::LatticeKind::BCC;
     NumberOrigin origin = storedOrigin(archive->metadata(), unpacks);
     std::shared_ptr<const volume::BrickSource> source = archive;
     if (unpacks) {
@@ -150,6 +153,9 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     } else if (archive->metadata().alternating && data.grids != ShownGrids::Both) {
         source = volume::makeOneGridSource(archive, data.grids == ShownGrids::First ? 0 : 1);
         origin.lattice = "one grid of D4*";
+    } else if (oneGrid) {
+        source = volume::makeSublatticeSource(archive, data.grids == ShownGrids::First ? 0 : 1);
+        origin.lattice = "one grid of BCC";
     } else if (archive->metadata().alternating) {
         source = volume::makeAlternatingSource(archive, volume::TimeFilter::Cubic);
     }
@@ -162,7 +168,7 @@ Sources openArchived(const DataRef& data, std::vector<std::string>& messages) {
     source = volume::withLabelNames(source, data.import.labels);
     if (data.grids == ShownGrids::Both)
         origin.computed = numbersOf(*archive, unpacks, order, source->info().times, messages);
-    const bool asStored = archive->metadata().alternating && !unpacks;
+    const bool asStored = (archive->metadata().alternating && !unpacks) || oneGrid;
     return {asStored ? source : drawnOn(source, data.lattice), source, std::move(origin)};
 }
 
@@ -316,9 +322,10 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
 Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedParameter>& wanted,
                    std::vector<std::string>& messages, const Progress& progress) {
     std::shared_ptr<const volume::BrickSource> numbers;
+    const auto bounded = withBounds(wanted, sources.origin, sources.numbers->info());
     return changed(sources, [&](const std::shared_ptr<const volume::BrickSource>& source) {
-        if (numbers) return volume::deriveLike(*numbers, source, wanted);
-        return numbers = volume::deriveAll(source, wanted, messages, progress); // they come first
+        if (numbers) return volume::deriveLike(*numbers, source, bounded);
+        return numbers = volume::deriveAll(source, bounded, messages, progress); // they come first
     });
 }
 

@@ -83,6 +83,9 @@ CompareVariant otherVariant(const Session& session, const volume::DatasetInfo& i
                         if (field.refersTo.ends_with("hannel") || field.refersTo.ends_with("ector"))
                             if (const std::string other = nameInOther(info, member); !other.empty())
                                 variant.changes[place + "/technique/" + std::string(field.key)] = other;
+                    if constexpr (std::is_same_v<Member, vis::Strokes>)
+                        if (const std::string other = nameInOther(info, member.vector); !other.empty())
+                            variant.changes[place + "/technique/strokes/vector"] = other;
                     if constexpr (std::is_same_v<Member, std::vector<vis::GlyphPart>>)
                         for (std::size_t n = 0; n < member.size(); ++n)
                             if (const std::string other = nameInOther(info, member[n].channel); !other.empty())

@@ -44,22 +44,6 @@ vis::BoxRegion boxAround(const volume::DatasetInfo& info, const volume::Box& box
     return region;
 }
 
-/// Makes a brush the only one that is enabled; adds it where no equal region is brushed.
-void brushAlone(Session& session, vis::Brush brush) {
-    std::vector<vis::Brush>& brushes = session.selection.brushes;
-    const auto same =
-        std::ranges::find_if(brushes, [&](const vis::Brush& each) { return each.region == brush.region; });
-    for (vis::Brush& each : brushes) each.enabled = false;
-    if (same != brushes.end()) {
-        same->enabled = true;
-        same->inverted = false;
-        same->combine = vis::BrushCombine::Or;
-        return;
-    }
-    brush.combine = vis::BrushCombine::Or;
-    brushes.push_back(std::move(brush));
-}
-
 void brushFinding(Session& session, const volume::DatasetInfo& info, const volume::Finding& finding) {
     if (isPlace(finding)) {
         vis::Brush brush;
@@ -83,6 +67,21 @@ void brushFinding(Session& session, const volume::DatasetInfo& info, const volum
 }
 
 } // namespace
+
+void brushAlone(Session& session, vis::Brush brush) {
+    std::vector<vis::Brush>& brushes = session.selection.brushes;
+    const auto same =
+        std::ranges::find_if(brushes, [&](const vis::Brush& each) { return each.region == brush.region; });
+    for (vis::Brush& each : brushes) each.enabled = false;
+    if (same != brushes.end()) {
+        same->enabled = true;
+        same->inverted = false;
+        same->combine = vis::BrushCombine::Or;
+        return;
+    }
+    brush.combine = vis::BrushCombine::Or;
+    brushes.push_back(std::move(brush));
+}
 
 ViewState viewOfFinding(const volume::Finding& finding, const volume::DatasetInfo& info) {
     const std::string x = nameOf(info, finding.x), y = nameOf(info, finding.y);

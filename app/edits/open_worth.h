@@ -8,6 +8,9 @@
 /// Opens the view that shows a finding of the list of what is worth seeing.
 namespace tessera::app {
 
+/// Makes a brush the only one that is enabled; adds it where no equal region is brushed.
+void brushAlone(Session& session, vis::Brush brush);
+
 /// The view that shows a finding: scatterplots of a pair, slices through a place, the histogram of a parameter in the
 /// selection, the table of regions, curves over the times.
 ViewState viewOfFinding(const volume::Finding& finding, const volume::DatasetInfo& info);

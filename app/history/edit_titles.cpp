@@ -49,12 +49,21 @@ std::string named(const std::string& kind, const std::string& name) {
 
 /// What users call a part of the session where that is not its key; "" = nothing else.
 std::string partWord(std::string_view part) {
-    static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
-        {"stretch", "proportions"}, {"render", "quality"},    {"appearance", "look of the window"},
-        {"lighting", "light"},      {"clips", "clipping"},    {"tone", "tone curve"},
-        {"animation", "animation"}, {"cursor", "cross-hair"}, {"views", "views"},
-        {"layers", "layers"},       {"lenses", "lenses"},     {"paper", "paper"},
-        {"probes", "probes"}};
+    static constexpr std::pair<std::string_view, std::string_view> kWords[] = {{"stretch", "proportions"},
+                                                                               {"render", "quality"},
+                                                                               {"appearance", "look of the window"},
+                                                                               {"lighting", "light"},
+                                                                               {"clips", "clipping"},
+                                                                               {"tone", "tone curve"},
+                                                                               {"animation", "animation"},
+                                                                               {"cursor", "cross-hair"},
+                                                                               {"views", "views"},
+                                                                               {"layers", "layers"},
+                                                                               {"lenses", "lenses"},
+                                                                               {"paper", "paper"},
+                                                                               {"probes", "probes"},
+                                                                               {"depthMask", "shadows of depth"},
+                                                                               {"callouts", "callouts"}};
     for (const auto& [key, word] : kWords)
         if (part == key) return std::string(word);
     return {};
@@ -78,6 +87,8 @@ NamedThing thingAt(const Session& session, const std::vector<std::string>& path)
         if (const auto* layer = at(1, session.layers)) return {layerName(*layer), 2};
     } else if (first == "lenses") {
         if (const auto* lens = at(1, session.lenses)) return {named("lens", lens->name), 2};
+    } else if (first == "callouts") {
+        if (const auto* callout = at(1, session.callouts)) return {"callout of " + callout->placeholder, 2};
     } else if (first == "probes") {
         if (const auto* probe = at(1, session.probes)) return {named("probe", probe->name), 2};
     } else if (first == "selection" && path.size() > 1 && path[1] == "brushes") {

@@ -116,6 +116,19 @@ void keepHiddenFocus(Json& document) {
         (*selection)["focusOpacity"] = 0;
 }
 
+/// Up to schema 5 paths took a vector of 1 as 1 length per time, whatever the units of the data.
+void keepSpeedOfPaths(Json& document) {
+    const auto layers = document.find("layers");
+    if (layers == document.end() || !layers->is_array()) return;
+    for (Json& layer : *layers) {
+        if (!layer.is_object()) continue;
+        const auto technique = layer.find("technique");
+        if (technique == layer.end() || !technique->is_object()) continue;
+        const auto kind = technique->find("kind");
+        if (kind != technique->end() && *kind == "pathlines") (*technique)["ignoreUnits"] = true;
+    }
+}
+
 } // namespace
 
 void migrate(Json& document, const std::string& file) {
@@ -138,6 +151,7 @@ void migrate(Json& document, const std::string& file) {
         forEachData(document, keepEvenCell);
         keepHiddenFocus(document);
     }
+    if (schema < 6) keepSpeedOfPaths(document);
     document["schema"] = kSessionSchema;
 }
 

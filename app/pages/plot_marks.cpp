@@ -54,6 +54,7 @@ public:
         }
         if (form_.outlines)
             for (const PlotOutline& each : plot_.outlines) outline(each);
+        for (const PlotFlow& each : plot_.flows) flow(each);
         for (const PlotSeries& series : plot_.series) series.bars ? bars(series) : line(series);
         if (std::ranges::any_of(plot_.series, &PlotSeries::bars) && plot_.y.range.lo < 0 && plot_.y.range.hi > 0)
             stroke({{x0_, py(0)}, {x1_, py(0)}}, inks_.frame, kPageThin);
@@ -225,6 +226,17 @@ private:
             rect({px(bar.x) - half, within(std::max(bar.y, 0.0))}, {px(bar.x) + half, within(std::min(bar.y, 0.0))},
                  glm::vec4(series.color, 1));
         }
+    }
+    void flow(const PlotFlow& shown) {
+        std::vector<glm::dvec2> outline, back;
+        for (std::size_t i = 0; i < shown.points.size(); ++i) {
+            const glm::dvec2 middle = at(shown.points[i]);
+            const double half = std::max(points(kPageLine) / 2, std::abs(py(shown.half[i]) - py(0)));
+            outline.emplace_back(middle.x, middle.y - half);
+            back.emplace_back(middle.x, middle.y + half);
+        }
+        outline.insert(outline.end(), back.rbegin(), back.rend());
+        if (outline.size() > 2) out_.push_back({Polygon{.points = std::move(outline), .color = shown.color}});
     }
     void line(const PlotSeries& series) {
         const Range up = plot_.upOf(series).range;

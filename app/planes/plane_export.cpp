@@ -5,6 +5,7 @@
 #include "app/pane/legend.h"
 #include "app/planes/contour_labels.h"
 #include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
 #include "volume/reconstruct/probe.h"
 
 #include <algorithm>
@@ -20,7 +21,6 @@ namespace {
 
 constexpr int kPageCells = 96, kMostCells = 512; ///< along an edge of a picture
 constexpr double kCellsPerPoint = 2;             ///< where the size of the page is given
-constexpr float kOnWhite = 0.7f;                 ///< of light colours, which vanish on white
 constexpr glm::vec4 kEdgeOnLight{0.267f, 0.267f, 0.267f, 1}, kEdgeOnDark{0.733f, 0.733f, 0.733f, 1};
 
 /// Places of uneven axes come from their sheet, which leaves the last digits of their ends open.
@@ -106,7 +106,7 @@ void addOutlines(Plot& plot, const PlanePicture& picture, bool dark) {
     for (const PlaneSection& section : picture.sections) {
         PlotOutline& outline = plot.outlines.emplace_back();
         for (const glm::dvec2& point : section.outline) outline.points.push_back(point * perUnit);
-        outline.color = glm::vec4(section.color * (dark ? 1 : kOnWhite), section.faint ? 0.35f : 1.0f);
+        outline.color = glm::vec4(section.color * (dark ? 1 : kBrightOnWhite), section.faint ? 0.35f : 1.0f);
         outline.dashed = section.dashed;
         if (section.middle) outline.dot = *section.middle * perUnit;
     }
@@ -122,6 +122,7 @@ Plot plotOf(const volume::DatasetInfo& info, const PlanePicture& picture, bool d
     const auto [right, up] = axisTexts(picture);
     Plot plot;
     plot.title = picture.axes ? picture.place + ", " + colors : colors;
+    if (picture.ownTime) plot.title = timeText(info, *picture.ownTime) + ", " + plot.title;
     plot.note = picture.axes ? "" : picture.place;
     const auto axisOf = [](const std::string& title, Range range, const AxisLabel& label) {
         return PlotAxis{.title = title,
@@ -148,6 +149,7 @@ Plot plotOf(const volume::DatasetInfo& info, const PlanePicture& picture, bool d
 
 /// Columns of numbers: along the picture, of the position, and of each channel.
 struct PlaneColumns {
+    std::vector<double> times;
     std::vector<std::string> planes;
     std::array<std::vector<double>, 2> along;
     std::array<std::vector<double>, 3> position;
@@ -164,6 +166,7 @@ void addSamples(PlaneColumns& columns, const volume::BrickSource& source, const 
         std::erase_if(row, [&](glm::dvec3 place) { return !inside(source.info(), place); });
         if (row.empty()) continue;
         for (const glm::dvec3& place : row) {
+            columns.times.push_back(picture.ownTime.value_or(std::nan("")));
             columns.planes.push_back(picture.place);
             for (int k = 0; k < 2; ++k)
                 columns.along[std::size_t(k)].push_back((k == 0 ? picture.right : picture.up)
@@ -209,7 +212,9 @@ Table planesTable(const volume::BrickSource& source, const std::vector<PlanePict
                   const std::vector<int>& channels, const Progress& progress) {
     std::vector<const PlanePicture*> planes;
     for (const PlanePicture& picture : pictures)
-        if (std::ranges::none_of(planes, [&](const auto* other) { return other->plane == picture.plane; }))
+        if (std::ranges::none_of(planes, [&](const auto* other) {
+                return other->plane == picture.plane && other->ownTime == picture.ownTime;
+            }))
             planes.push_back(&picture);
     PlaneColumns columns;
     columns.values.resize(channels.size());
@@ -221,6 +226,9 @@ Table planesTable(const volume::BrickSource& source, const std::vector<PlanePict
     const auto parallel = [&](const PlanePicture* other) {
         return other->plane.right == planes.front()->plane.right && other->plane.up == planes.front()->plane.up;
     };
+    if (std::ranges::any_of(planes, [](const PlanePicture* picture) { return picture->ownTime.has_value(); }))
+        table.columns.push_back(
+            {.name = source.info().timeName, .unit = source.info().timeUnit, .numbers = std::move(columns.times)});
     if (!std::ranges::all_of(planes, parallel)) // of parallel ones the position tells which it is
         table.columns.push_back({.name = "plane", .texts = std::move(columns.planes)});
     for (const PlanePicture* picture : planes) {
@@ -252,6 +260,8 @@ void exportPlanes(ViewContext& context, ToolRow& tools, const std::string& name,
     for (const PlanePicture& picture : pictures) // what is seen is in the table, too
         if (std::ranges::find(channels, picture.shows.channel) == channels.end())
             channels.push_back(picture.shows.channel);
+    const bool ownTimes =
+        std::ranges::any_of(pictures, [](const PlanePicture& each) { return each.ownTime.has_value(); });
     const auto shown = std::make_shared<const std::vector<PlanePicture>>(std::move(pictures));
     exportMenu(context, tools,
                {.name = name,
@@ -261,7 +271,8 @@ void exportPlanes(ViewContext& context, ToolRow& tools, const std::string& name,
                     },
                 .whole = false,
                 .table = [source, shown, channels = std::move(channels)](
-                             const Progress& progress) { return planesTable(*source, *shown, channels, progress); }});
+                             const Progress& progress) { return planesTable(*source, *shown, channels, progress); }},
+               !ownTimes);
 }
 
 } // namespace tessera::app

@@ -15,9 +15,9 @@ VectorPage planesPage(const volume::BrickSource& source, const std::vector<Plane
                       const PageForm& form, const Progress& progress = {});
 
 /// Values of channels at the nodes of a grid on each plane within the box, plane by plane, row by row from below; of
-/// planes with several pictures once. Columns: `plane` (where it lies) if not all are parallel, `u` and `v` (along
-/// a tilted picture) if any is, the position along each axis of the data, and each channel, interpolated between
-/// the samples, absent where the data are. Throws Error, Cancelled.
+/// planes with several pictures at one time once. Columns: the time where pictures have their own, `plane` (where it
+/// lies) if not all are parallel, `u` and `v` (along a tilted picture) if any is, the position along each axis of the
+/// data, and each channel, interpolated between the samples, absent where the data are. Throws Error, Cancelled.
 Table planesTable(const volume::BrickSource& source, const std::vector<PlanePicture>& pictures,
                   const std::vector<int>& channels, const Progress& progress = {});
 

@@ -2,6 +2,7 @@
 
 #include "app/pane/view_parts.h"
 #include "app/tools/profile_line.h"
+#include "app/ui/parameter_widget.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
 
@@ -29,6 +30,7 @@ void addInnerSlices(vis::Scene& scene, const Session& session, const vis::SliceL
             if (!layer.visible || layer.lens != lens.name) continue;
             vis::SliceLayer inner = like;
             inner.channel = vis::shownChannel(layer.technique);
+            inner.strokes.grey = false;
             scene.layers.push_back({layer.name, true, inner, layer.lens, layer.transfer, layer.timeShift});
         }
     }
@@ -40,10 +42,13 @@ vis::Scene planeScene(const ViewContext& context, const PlanePicture& picture, c
     const volume::DatasetInfo& info = context.source->info();
     vis::Scene scene = sceneWithLimits(context);
     scene.paper.reset();
+    scene.depthMask = {};
     scene.showBox = false;
+    if (picture.ownTime) scene.time = *picture.ownTime;
     vis::SliceLayer layer;
     layer.channel = info.channel(picture.shows.channel).name;
     if (!picture.shows.lines.drawn()) layer.contours = picture.shows.lines.count;
+    layer.strokes = picture.shows.strokes;
     if (picture.axes) {
         const auto& [right, up, normal] = *picture.axes;
         scene.camera = vis::planeCamera(right, up, world);
@@ -120,8 +125,9 @@ void useMouse(ViewContext& context, PlaneState& state, const PlanePicture& pictu
 }
 
 void drawPicture(ViewContext& context, PlaneState& state, const PlanePicture& picture, const PlaneFrame& frame,
-                 double share) {
-    const vis::Scene scene = planeScene(context, picture, frame.world);
+                 double share, const std::string& key) {
+    vis::Scene scene = planeScene(context, picture, frame.world);
+    state.strokes.addTo(context, scene, key);
     if (!state.target) state.target = context.renderer.makeTarget();
     vis::FrameRequest request;
     request.size = {frame.plot.width(), frame.plot.height()};
@@ -199,6 +205,19 @@ void choosePlaneChannel(ToolRow& tools, const volume::DatasetInfo& info, int sho
     std::string name = info.channel(shown).name;
     if (chooseChannel("##channel", &info, name)) channel = name;
     if (ImGui::IsItemHovered()) tooltip("Parameter of the colours");
+}
+
+void chooseStrokes(ToolRow& tools, const volume::DatasetInfo& info, vis::Strokes& strokes) {
+    if (firstVector(info).empty()) return;
+    const std::string title = strokes.vector.empty() ? "no strokes" : "strokes of " + strokes.vector;
+    const float width = std::min(buttonWidth(title.c_str()), em() * 11);
+    if (!tools.next(width)) return;
+    if (ImGui::Button(title.c_str(), {width, 0})) ImGui::OpenPopup("strokes");
+    if (ImGui::IsItemHovered()) tooltip("Fine strokes along a vector: how it runs in the slice");
+    if (!ImGui::BeginPopup("strokes")) return;
+    ImGui::Dummy({em() * 24, 0}); // its least width
+    drawDescribed(strokes, {.info = &info, .labelShare = 0.3f});
+    ImGui::EndPopup();
 }
 
 void copyReadout(ViewContext& context, ToolRow& tools, const Readout& readout) {

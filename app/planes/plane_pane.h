@@ -4,6 +4,7 @@
 #include "app/planes/contour_lines.h"
 #include "app/planes/plane_picture.h"
 #include "app/queries/readout.h"
+#include "app/queries/strokes_query.h"
 #include "app/tools/lens_edit.h"
 #include "app/tools/space_handles.h"
 
@@ -21,6 +22,7 @@ struct PlaneState {
     LensDrag lens;
     HandleDrag handles;
     ContourCache contours;
+    AsyncStrokes strokes;
 };
 
 /// Pixels per world length of the largest picture that fits between two corners; 0 where a side of that room is below
@@ -36,9 +38,10 @@ PlaneFrame planeFrame(const PlanePicture& picture, const vis::WorldFrame& world,
 void useMouse(ViewContext& context, PlaneState& state, const PlanePicture& picture, const PlaneFrame& frame,
               const std::function<void()>& menu = {});
 
-/// Draws the picture. `share`: of the time for a frame, where all is still; half of it in motion.
+/// Draws the picture. `share`: of the time for a frame, where all is still; half of it in motion. `key`: of the place
+/// where it is shown.
 void drawPicture(ViewContext& context, PlaneState& state, const PlanePicture& picture, const PlaneFrame& frame,
-                 double share);
+                 double share, const std::string& key);
 
 /// Draws what lies over the picture: the edge of the data, contour lines with their values, outlines of lenses and
 /// brushes, profile lines, handles and the cross-hair. `key`: of the job that reads the lines.
@@ -61,6 +64,8 @@ void drawPlaneLegend(const ViewContext& context, const PlanePicture& picture, co
 
 /// The tool that chooses the parameter of the colours.
 void choosePlaneChannel(ToolRow& tools, const volume::DatasetInfo& info, int shown, std::string& channel);
+/// The tool that chooses the vector of strokes, where the data have vectors.
+void chooseStrokes(ToolRow& tools, const volume::DatasetInfo& info, vis::Strokes& strokes);
 /// The tool that copies the values at the cross-hair.
 void copyReadout(ViewContext& context, ToolRow& tools, const Readout& readout);
 

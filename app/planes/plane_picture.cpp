@@ -67,9 +67,8 @@ void show(PlanePicture& picture, const Session& session, const volume::DatasetIn
     picture.range = vis::effectiveRange(picture.function, info.channelRange(own));
     picture.lined = contourChannel(info, shows.lines, shows.channel);
     if (picture.lined) picture.levels = contourLevels(session, info, *picture.lined, shows.lines.count);
-    if (shows.plain) return;
-    picture.sections = planeSections(session, info, picture.plane);
-    picture.cursor = picture.along(session.cursor);
+    if (!shows.plain) picture.sections = planeSections(session, info, picture.plane);
+    if (!shows.plain || shows.crossed) picture.cursor = picture.along(session.cursor);
 }
 
 } // namespace
@@ -125,6 +124,12 @@ PlanePicture tiltedPlane(const Session& session, const volume::DatasetInfo& info
             " at " + formatQuantity(AxisScale{normalTo.map, 1, normalTo.reversed}.number(offset) * unit.perUnit,
                                     unit.name, size * unit.perUnit / 1000);
     show(picture, session, info, shows);
+    return picture;
+}
+
+PlanePicture atTime(PlanePicture picture, const volume::DatasetInfo& info, double time) {
+    picture.ownTime = time;
+    picture.time = volume::timesAround(info.times, time);
     return picture;
 }
 

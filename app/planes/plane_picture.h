@@ -18,7 +18,9 @@ namespace tessera::app {
 struct PlaneContent {
     int channel = 0;            ///< of its colours: index of DatasetInfo::channels()
     ContourSettings lines = {}; ///< of contour lines
-    bool plain = false;         ///< without lenses, brushes, profile lines and cross-hair
+    vis::Strokes strokes = {};
+    bool plain = false;   ///< without lenses, brushes, profile lines and cross-hair
+    bool crossed = false; ///< a plain one with the cross-hair
 };
 
 struct PlanePicture {
@@ -35,6 +37,7 @@ struct PlanePicture {
 
     PlaneContent shows;
     volume::TimePair time;
+    std::optional<double> ownTime;  ///< where it is not the session's
     vis::TransferFunction function; ///< of the colours
     Range range;                    ///< that it spans
     std::optional<int> lined;       ///< channel of the contour lines; nothing: there are none
@@ -56,6 +59,9 @@ PlanePicture axisPlane(const Session& session, const volume::DatasetInfo& info, 
 /// The plane through the session's cursor across `normal`. Cursors in one plane have the same picture.
 PlanePicture tiltedPlane(const Session& session, const volume::DatasetInfo& info, glm::dvec3 normal,
                          const PlaneContent& shows);
+
+/// The picture at another time than the session's.
+PlanePicture atTime(PlanePicture picture, const volume::DatasetInfo& info, double time);
 
 /// The axes of a picture in words: "x", or where none of the data's runs along it "u = 0.71 x - 0.71 z".
 std::array<std::string, 2> axisTexts(const PlanePicture& picture);

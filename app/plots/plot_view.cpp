@@ -44,6 +44,8 @@ std::vector<ImVec2> alongSeries(const Plot& plot, const PlotFrame& whole) {
             }
         }
     }
+    for (const PlotFlow& flow : plot.flows)
+        for (const glm::dvec2& at : flow.points) along.push_back(whole.pixel(at.x, at.y));
     return along;
 }
 
@@ -61,6 +63,24 @@ void drawSeriesBars(ImDrawList& draw, const PlotSeries& series, const PlotFrame&
         draw.AddRectFilled({left, top}, {std::max(right, left + 1), bar.y > 0 ? zero : std::max(zero + 1, end)},
                            seriesInk(series.color));
     }
+}
+
+void drawFlow(ImDrawList& draw, const PlotFlow& flow, const PlotFrame& frame) {
+    const ImU32 color = ImGui::ColorConvertFloat4ToU32({flow.color.r, flow.color.g, flow.color.b, flow.color.a});
+    std::vector<ImVec2> upper, lower;
+    for (std::size_t i = 0; i < flow.points.size(); ++i) {
+        const glm::dvec2 at = flow.points[i];
+        const ImVec2 middle = frame.pixel(at.x, at.y);
+        const float half = std::max(0.6f, std::abs(frame.pixel(at.x, at.y + flow.half[i]).y - middle.y));
+        upper.push_back({middle.x, middle.y - half});
+        lower.push_back({middle.x, middle.y + half});
+    }
+    // Smooth edges between neighbouring parts would be seen as gaps.
+    const ImDrawListFlags flags = draw.Flags;
+    draw.Flags &= ~ImDrawListFlags_AntiAliasedFill;
+    for (std::size_t i = 1; i < upper.size(); ++i)
+        draw.AddQuadFilled(upper[i - 1], upper[i], lower[i], lower[i - 1], color);
+    draw.Flags = flags;
 }
 
 void drawSeriesLine(ImDrawList& draw, const PlotSeries& series, const PlotFrame& frame) {
@@ -113,8 +133,9 @@ std::optional<PlotColumn> placePlots(const std::vector<Plot>& plots, float besid
         column.titled =
             column.titled && ImGui::CalcTextSize(titleWithUnit(plot.y.title, plot.y.unit).c_str()).x < heights.each;
     for (const Plot& plot : plots)
-        column.left = std::max(column.left, axisRoom(AxisSide::Left, plot.y.range,
-                                                     column.titled ? TitlePlace::Beside : TitlePlace::Nowhere));
+        if (plot.y.numbered)
+            column.left = std::max(column.left, axisRoom(AxisSide::Left, plot.y.range,
+                                                         column.titled ? TitlePlace::Beside : TitlePlace::Nowhere));
     if (all.x - column.left < em() * 4) {
         drawHint("Not enough room", "Enlarge the pane.");
         return std::nullopt;
@@ -142,7 +163,7 @@ std::optional<PlotColumn> placePlots(const std::vector<Plot>& plots, float besid
 }
 
 void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool titled) {
-    const bool single = plot.series.size() == 1;
+    const bool single = plot.series.size() == 1 && plot.y.numbered;
     std::vector<std::pair<std::string, ImU32>> names;
     const std::string up = titleWithUnit(plot.y.title, plot.y.unit);
     if (plot.series.empty() && !plot.title.empty())
@@ -153,7 +174,7 @@ void drawPlotNames(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, b
         const std::string& unit = plot.upOf(series).unit;
         return !unit.empty() && series.name.ends_with(titleWithUnit("", unit));
     });
-    if (!titled && plot.series.size() > 1 && !told) names.emplace_back(up, plotColors().text);
+    if (!titled && plot.series.size() > 1 && !told && !up.empty()) names.emplace_back(up, plotColors().text);
     for (const PlotSeries& series : plot.series) {
         if (single && titled && series.value.empty()) continue;
         names.emplace_back((single ? up : series.name) + (series.value.empty() ? "" : "  " + series.value),
@@ -189,6 +210,7 @@ void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool t
     const PlotColors colors = plotColors();
     drawPlotNames(draw, plot, frame, titled); // below the lines: a low plot has no room beside them
     draw.PushClipRect({frame.min.x - em(), frame.min.y}, {frame.max.x + em(), frame.max.y}, true);
+    for (const PlotFlow& flow : plot.flows) drawFlow(draw, flow, frame);
     for (const PlotSeries& series : plot.series)
         series.bars ? drawSeriesBars(draw, series, frame) : drawSeriesLine(draw, series, frameOf(plot, series, frame));
     if (plot.cursorX || plot.cursorY)
@@ -202,9 +224,10 @@ void drawPlot(ImDrawList& draw, const Plot& plot, const PlotFrame& frame, bool t
     }
     draw.PopClipRect();
     draw.AddRect(frame.min, frame.max, colors.frame);
-    drawAxis(draw, frame, AxisSide::Left, titled ? plot.y.title : "", titled ? plot.y.unit : "",
-             frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f,
-             {.grid = grid, .room = left, .ink = plot.y.ink ? seriesInk(*plot.y.ink) : 0});
+    if (plot.y.numbered)
+        drawAxis(draw, frame, AxisSide::Left, titled ? plot.y.title : "", titled ? plot.y.unit : "",
+                 frame.min.y - em() * 0.3f, frame.max.y + em() * 0.3f,
+                 {.grid = grid, .room = left, .ink = plot.y.ink ? seriesInk(*plot.y.ink) : 0});
     if (!plot.right) return;
     PlotFrame right = frame;
     right.y = plot.right->range;

@@ -47,16 +47,14 @@ int branchesLevel(const volume::BrickGrid& grid, std::size_t times) {
     return grid.levelWithin(std::max(kFewest, kSamples / double(std::max<std::size_t>(1, times))));
 }
 
-/// Whether the answer to one can stand for the other meanwhile: while a brush is dragged, but not where brushes change
-/// places, whose names would stand at the numbers of others.
+} // namespace
+
 bool sameButOne(const BranchesQuery& shown, const BranchesQuery& wanted) {
     const std::vector<vis::Brush>&a = shown.selection.brushes, &b = wanted.selection.brushes;
     std::size_t others = 0;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) others += a[i] == b[i] ? 0 : 1;
     return a.size() == b.size() && others < 2;
 }
-
-} // namespace
 
 BranchesQuery branchesQuery(const Session& session, const volume::DatasetInfo& info) {
     BranchesQuery query;

@@ -32,6 +32,10 @@ struct BranchesQuery {
 /// Of the first kMostLevels brushes of a session, at the time shown.
 BranchesQuery branchesQuery(const Session& session, const volume::DatasetInfo& info);
 
+/// Whether the answer to one can stand for the other meanwhile: while a brush is dragged, but not where brushes change
+/// places, whose names would stand at the numbers of others.
+bool sameButOne(const BranchesQuery& shown, const BranchesQuery& wanted);
+
 /// Samples and volume by outcome of all brushes.
 class Branches {
 public:

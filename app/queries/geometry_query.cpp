@@ -36,7 +36,7 @@ std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const volum
 
 FlowQuery flowQuery(const vis::FlowLayer& layer, const Session& session, const volume::DatasetInfo& info) {
     FlowQuery query{layer, volume::timesAround(info.times, session.time), session.stretch};
-    // Pathlines cover all times; the time shown only decides which particles start.
+    // Paths cover all times; the time shown only decides which particles start.
     if (layer.kind == vis::FlowKind::Pathlines) query.time = {query.time.nearest(), query.time.nearest(), 0};
     query.layer.style = {}; // does not change the geometry
     if (layer.seedBrushed && session.selection.active()) {
@@ -92,8 +92,11 @@ SharedGeometry makeDrawn(const SurfaceQuery& query, const SharedSource& source, 
 
 /// Null where there is nothing to show.
 SharedGeometry makeDrawn(const FlowQuery& query, const SharedSource& source, int, const Progress& progress) {
-    const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
     const vis::DoiFunction interest(query.brushes, query.lenses);
+    if (vis::followsParticles(query.layer.kind))
+        return vis::makeParticles(*source, query.layer, volume::timeAt(source->info().times, query.time), query.stretch,
+                                  progress, &interest);
+    const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
     return vis::makeFlow(*shown.source, query.layer, shown.time, query.stretch, progress, &interest);
 }
 

@@ -1,5 +1,6 @@
 #include "app/queries/readout.h"
 
+#include "app/data/number_origin.h"
 #include "app/pane/axis_label.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/fitted_text.h"
@@ -67,6 +68,13 @@ void updateReadout(ViewContext& context, Readout& readout) {
         readout.source = context.numbers;
         readout.cache = std::make_shared<volume::BrickCache>(context.numbers, kCacheBytes);
         readout.channels = context.numbers->info().channels();
+        readout.bounds.clear();
+        readout.boundKind.clear();
+        for (const volume::Channel& channel : readout.channels) {
+            const auto bound = packingBound(context.origin, context.numbers->info(), channel);
+            readout.bounds.push_back(bound ? bound->most : 0);
+            if (bound && bound->most > 0) readout.boundKind = boundKind(*bound);
+        }
     }
     const auto values = readout.answers.get(
         context, context.numbers,
@@ -155,6 +163,7 @@ std::vector<std::string> valueTexts(const volume::DatasetInfo& info, const Reado
     for (std::size_t i = 0; i < column.numbers.size(); ++i) {
         const volume::Channel& channel = readout.channels[i];
         const std::optional<double>& value = readout.values[i].interpolated;
+        const volume::Parameter& parameter = info.parameters[static_cast<std::size_t>(channel.parameter)];
         // Components say little beside the magnitude.
         if (!value || channel.name.find('.') != std::string::npos) continue;
         const std::string text = cellOf(column, i);
@@ -164,7 +173,9 @@ std::vector<std::string> valueTexts(const volume::DatasetInfo& info, const Reado
             values.push_back(text);
             continue;
         }
-        const std::string number = " " + text + unit, cut = fitBefore(channel.name, number, room);
+        const std::string bound = parameter.categorical ? "" : boundText(readout, i, false);
+        const std::string number = " " + text + (bound.empty() ? "" : " " + bound) + unit,
+                          cut = fitBefore(channel.name, number, room);
         values.push_back(cut.empty() ? channel.name + number : cut);
     }
     return values;
@@ -219,6 +230,11 @@ std::size_t columnsThatFit(const volume::DatasetInfo& info, const Readout& reado
 
 } // namespace
 
+std::string boundText(const Readout& readout, std::size_t channel, bool unit) {
+    if (channel >= readout.bounds.size() || !(readout.bounds[channel] > 0)) return {};
+    return "\u00b1 " + boundWithUnit(readout.bounds[channel], unit ? readout.channels[channel].unit : "");
+}
+
 float readoutHeight(const Readout& readout) {
     const float row = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
     return 2 * ImGui::GetTextLineHeightWithSpacing() + row * static_cast<float>(readout.channels.size() + 1);
@@ -228,6 +244,7 @@ std::string readoutText(const ViewContext& context, const Readout& readout) {
     std::string all;
     for (const std::string& text : placeTexts(context)) all += (all.empty() ? "" : "   ") + text;
     for (const std::string& text : valueTexts(context.numbers->info(), readout, true)) all += "\n" + text;
+    if (!readout.boundKind.empty()) all += "\n\u00b1: " + readout.boundKind;
     return all;
 }
 
@@ -293,7 +310,12 @@ void drawReadout(ViewContext& context, const Readout& readout) {
         ImGui::TableNextColumn();
         fittedText(rows[i][0]);
         ImGui::TableNextColumn();
-        cell(rows[i][1], !value.interpolated);
+        const std::string bound = value.interpolated ? boundText(readout, i, false) : "";
+        const std::string both = bound.empty() ? rows[i][1] : rows[i][1] + " " + bound;
+        const bool fits = ImGui::CalcTextSize(both.c_str()).x <= ImGui::GetContentRegionAvail().x;
+        cell(fits ? both : rows[i][1], !value.interpolated);
+        if (!bound.empty() && ImGui::IsItemHovered())
+            tooltip((rows[i][1] + " " + boundText(readout, i, true) + " (" + readout.boundKind + ")").c_str());
         ImGui::TableNextColumn();
         cell(rows[i][2], !value.nearest);
         if (columns < 4) continue;
@@ -337,6 +359,13 @@ std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, 
     put(info.timeName, info.timeUnit, point.w);
     for (const volume::Quantity& quantity : info.quantities)
         put(quantity.name, quantity.unit, volume::valueAt(info.times, quantity.values, session.time));
+    if (readout.boundKind.empty()) return csvOf(table);
+    TableColumn bound{.name = "error at most (" + readout.boundKind + ")", .numbers = readout.bounds};
+    for (double& each : bound.numbers)
+        if (!(each > 0)) each = std::nan("");
+    bound.numbers.resize(readout.values.size(), std::nan(""));
+    bound.numbers.insert(bound.numbers.begin(), static_cast<std::size_t>(at), std::nan(""));
+    table.columns.push_back(std::move(bound));
     return csvOf(table);
 }
 

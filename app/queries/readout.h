@@ -24,6 +24,9 @@ struct Readout {
     };
     std::vector<volume::Channel> channels;
     std::vector<volume::ProbeValue> values; ///< by channel; empty until they are read
+    /// By channel: how far samples may be from those that were packed; 0 = exact or not known.
+    std::vector<double> bounds = {};
+    std::string boundKind = {}; ///< what these are: "bound of the archive"
     AsyncQuery<Query, std::vector<volume::ProbeValue>> answers;
     std::shared_ptr<volume::BrickCache> cache;         ///< bricks around the cursor, so that dragging it decodes few
     std::shared_ptr<const volume::BrickSource> source; ///< of the cache
@@ -50,8 +53,11 @@ std::string readoutText(const ViewContext& context, const Readout& readout);
 /// Pixels that the table needs.
 float readoutHeight(const Readout& readout);
 
-/// Every parameter's value, the nearest sample's and, where a label says regions, the region that the point lies in (of
-/// a parameter whose regions are kept apart, by their label).
+/// "± 0.05 K" of a channel, by its index; "" where it is exact or nothing is known.
+std::string boundText(const Readout& readout, std::size_t channel, bool unit);
+
+/// Every parameter's value, the nearest sample's, how far packed samples may be off and, where a label says regions,
+/// the region that the point lies in (of a parameter whose regions are kept apart, by their label).
 Table readoutTable(const volume::DatasetInfo& info, const Readout& readout);
 /// The same as CSV, after rows for the place, the time and the quantities over time.
 std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, const Readout& readout);

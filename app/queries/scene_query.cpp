@@ -18,6 +18,7 @@ void addObliqueSlices(vis::Scene& scene, const Session& session, const volume::D
         if (!channel) continue;
         vis::SliceLayer slice =
             obliqueLayer(*view, info.channel(*channel).name, vis::worldFrame(info, session.stretch));
+        slice.strokes = view->strokes;
         scene.layers.push_back({.name = pane, .visible = true, .technique = slice});
     }
 }
@@ -28,7 +29,8 @@ vis::Scene AsyncScene::get(ViewContext& context, const std::string& pane, bool m
     vis::Scene scene = sceneWithLimits(context);
     addFocusLayers(scene, context.source->info());
     addObliqueSlices(scene, context.session, context.source->info());
-    scene.geometry = geometry_.get(context, pane, moving);
+    scene.geometry = vis::withHalos(geometry_.get(context, pane, moving), vis::groundColor(scene));
+    strokes_.addTo(context, scene, pane);
     return scene;
 }
 

@@ -41,8 +41,6 @@ volume::StatisticsQuery samplesQuery(const BrushedQuery& brushed, const volume::
 
 namespace {
 
-constexpr std::size_t kCoarseBytes = std::size_t(64) << 20;
-
 /// The level to begin with: coarse enough to answer within a few milliseconds.
 int coarseLevel(const volume::BrickGrid& grid, std::size_t channels) {
     constexpr double kSamples = 3e5;
@@ -120,7 +118,7 @@ BrushedQuery brushedQuery(const Session& session, const volume::DatasetInfo& inf
         query.selection.brushes.push_back(std::move(brush));
     }
     const bool marked = std::any_of(session.lenses.begin(), session.lenses.end(),
-                                    [](const vis::Lens& lens) { return lens.enabled && lens.marks; });
+                                    [&](const vis::Lens& lens) { return vis::marksAt(lens, session.time); });
     // Enabled brushes take precedence, so that the selection is the same in plots, tables and volumes.
     if (marked && query.selection.brushes.empty())
         query.selection.brushes.push_back({.name = "", .color = {}, .region = vis::LensRegion{}});
@@ -138,24 +136,16 @@ volume::Statistics readStatistics(const std::shared_ptr<const volume::BrickSourc
 
 std::shared_ptr<const StatisticsResult> AsyncStatistics::get(ViewContext& context, const std::string& jobKey,
                                                              const BrushedQuery& query) {
-    if (source_ != context.numbers) {
-        source_ = context.numbers;
-        coarse_ = std::make_shared<volume::BrickCache>(context.numbers, kCoarseBytes);
-    }
-    const int levels = source_->grid().levels, first = firstLevel(source_->grid(), query);
+    const auto& samples = samples_.follow(context);
+    const int levels = samples->grid().levels, first = firstLevel(samples->grid(), query);
     return query_.get(
-        context, source_,
-        {.key = jobKey,
-         .title = "Statistics",
-         .quiet = first == 0,
-         .lowPriority = true,
-         .duringEdits = true,
-         .firstLevel = first,
-         // Statistics of all samples are better than any coarse level.
-         .nextLevel = [levels](int level) { return level == levels ? 0 : std::max(0, level - 2); }},
+        context, samples,
+        plotOptions(jobKey, "Statistics", first,
+                    // Statistics of all samples are better than any coarse level.
+                    [levels](int level) { return level == levels ? 0 : std::max(0, level - 2); }),
         query,
-        [coarse = coarse_](const std::shared_ptr<const volume::BrickSource>& source, const BrushedQuery& asked,
-                           int& level, const Progress& progress) {
+        [coarse = samples_.coarse()](const std::shared_ptr<const volume::BrickSource>& source,
+                                     const BrushedQuery& asked, int& level, const Progress& progress) {
             return readResult(level > 0 ? coarse : source, asked, level, progress);
         },
         samePlots);

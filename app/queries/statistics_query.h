@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/queries/async_query.h"
+#include "app/queries/levelled_samples.h"
 #include "volume/analysis/statistics.h"
 #include "volume/field/time_pair.h"
 
@@ -66,8 +67,7 @@ public:
 
 private:
     AsyncQuery<BrushedQuery, StatisticsResult> query_{{.answers = 32}}; ///< one of 6 parameters, 96 bins is 2 MB
-    std::shared_ptr<const volume::BrickSource> source_;
-    std::shared_ptr<const volume::BrickSource> coarse_; ///< its coarse bricks, kept while a brush is dragged
+    LevelledSamples samples_;
 };
 
 } // namespace tessera::app

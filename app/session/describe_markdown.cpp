@@ -123,6 +123,7 @@ std::string parameterReference() {
     out += markdownSection<vis::Light>("lighting.lights", "One light.");
     out += markdownSection<vis::Clip>("clips", "A plane or body that cuts the data open.");
     out += markdownSection<vis::Lens>("lenses", "A lens; layers refer to it by its name.");
+    out += markdownSection<Callout>("callouts", "A detail beside the volume; it follows the place that it shows.");
     forEachViewKind([&](const auto& kind) {
         using View = typename std::decay_t<decltype(kind)>::State;
         out += markdownSection<View>("View of type `" + std::string(View::kType) + "`", describeKind(kind.traits));

@@ -45,6 +45,10 @@ public:
         }
     }
 
+    void callouts() {
+        for (Callout& callout : session_.callouts) fitNames(callout);
+    }
+
     void brushes() {
         std::erase_if(session_.selection.brushes, [&](const vis::Brush& brush) {
             const std::vector<std::string> names = vis::regionChannels(brush.region);
@@ -70,6 +74,8 @@ public:
         if (info_.times.size() == 1) return; // the views' own times come back with the times
         for (auto& [pane, view] : session_.views)
             if (auto* const volume = std::get_if<VolumeView>(&view); volume && volume->time) fitTime(*volume->time);
+        for (Callout& callout : session_.callouts)
+            if (callout.time) fitTime(*callout.time);
     }
 
 private:
@@ -118,6 +124,8 @@ private:
                 }
             } else if constexpr (std::is_same_v<Member, std::vector<vis::GlyphPart>>) {
                 fitParts(member);
+            } else if constexpr (std::is_same_v<Member, vis::Strokes>) {
+                fitNames(member);
             }
         });
         if constexpr (requires { technique.surfaceValue; })
@@ -149,7 +157,7 @@ private:
             } else if constexpr (std::is_same_v<Member, std::string>) {
                 if (field.refersTo == "channel")
                     replace(member);
-                else if (field.refersTo == "vector" && !member.empty())
+                else if (field.refersTo.ends_with("ector") && !member.empty())
                     fitVector(member);
                 else if (field.refersTo == "optionalChannel" && !known(member))
                     member.clear();
@@ -188,6 +196,7 @@ void fitSession(Session& session, const volume::DatasetInfo& info, std::vector<s
     Fitting fitting(session, info, messages);
     fitting.layers();
     fitting.views();
+    fitting.callouts();
     fitting.brushes();
     fitting.place();
 }

@@ -67,6 +67,7 @@ vis::Scene sceneOf(const Session& session) {
     scene.clips = session.clips;
     scene.lenses = session.lenses;
     scene.tone = session.tone;
+    scene.depthMask = session.depthMask;
     scene.paper = session.paper;
     scene.stretch = session.stretch;
     scene.cursor = session.cursor;
@@ -99,7 +100,7 @@ bool toScale(const DataRef& data, const volume::DatasetInfo& info) {
 vis::LensSpace lensSpace(const Session& session, const volume::DatasetInfo& info) {
     vis::WorldFrame frame = vis::worldFrame(info, session.stretch);
     if (toScale(session.data, info)) frame.axes = {};
-    return {vis::placeLenses(session.lenses, frame, session.camera, session.cursor), frame};
+    return {vis::placeLenses(session.lenses, frame, session.camera, session.cursor, session.time), frame};
 }
 
 vis::LensSpace brushSpace(const Session& session, const volume::DatasetInfo& info) {

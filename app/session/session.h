@@ -1,6 +1,7 @@
 #pragma once
 
 #include "app/session/animation.h"
+#include "app/session/callout.h"
 #include "app/session/dock_tree.h"
 #include "app/session/figure_settings.h"
 #include "app/session/views/view_state.h"
@@ -22,7 +23,7 @@
 namespace tessera::app {
 
 /// The schema that is written, and the oldest that is read.
-inline constexpr int kSessionSchema = 5, kOldestSchema = 2;
+inline constexpr int kSessionSchema = 6, kOldestSchema = 2;
 
 /// A data file of a session, identified by path (relative to the session file), size and hash.
 struct DataFile {
@@ -44,7 +45,7 @@ struct DataFile {
 enum class PictureLattice { Grid, BodyCentred, Even };
 inline constexpr std::string_view kPictureLatticeNames[] = {"grid", "bodyCentred", "even"};
 
-/// What is shown of an archive on D4*: both of its grids at every time, or the stored times of one grid.
+/// What is shown of an archive on D4* or BCC: both of its grids (of D4* at every time), or one grid as it is stored.
 enum class ShownGrids { Both, First, Second };
 inline constexpr std::string_view kShownGridsNames[] = {"both", "first", "second"};
 
@@ -98,7 +99,7 @@ struct DataRef {
                         .doc =
                             "Of an archive on D4*, the lattice in space and time: both of its grids at every time, of "
                             "which one is computed from the times before and after, or one grid alone at its own "
-                            "times, with the samples as stored",
+                            "times, with the samples as stored; of one on BCC: both grids, or one alone",
                         .names = kShownGridsNames});
         visit(self.derived, FieldInfo{.key = "derived", .doc = "Parameters computed from the others", .hidden = true});
         visit(self.import, FieldInfo{"import", "What the user stated about the files"});
@@ -180,7 +181,9 @@ struct Session {
     vis::Lighting lighting;
     std::vector<vis::Clip> clips;
     std::vector<vis::Lens> lenses; ///< a later one lies over those before it
+    std::vector<Callout> callouts;
     vis::Tone tone;
+    vis::DepthMask depthMask;
     std::optional<vis::Paper> paper; ///< in place of the theme's background
     Animation animation;
     Appearance appearance;
@@ -220,7 +223,10 @@ struct Session {
         visit(self.lighting, FieldInfo{"lighting", "Lights and surfaces"});
         visit(self.clips, FieldInfo{"clips", "Planes and bodies that cut the data open"});
         visit(self.lenses, FieldInfo{"lenses", "Lenses; a later one lies over an earlier one"});
+        visit(self.callouts,
+              FieldInfo{"callouts", "Details beside the volume, joined to a lens, brush or plane in it"});
         visit(self.tone, FieldInfo{"tone", "Mapping of bright light to the range of the screen"});
+        visit(self.depthMask, FieldInfo{"depthMask", "Shadows of depth around what stands before something else"});
         visit(self.paper, FieldInfo{"paper", "Paper behind the picture; none: the background of the theme"});
         visit(self.animation, FieldInfo{"animation", "Playing through time or keyframes"});
         visit(self.appearance, FieldInfo{"appearance", "Appearance of the window"});

@@ -3,6 +3,7 @@
 namespace tessera::app {
 
 template const ValueType& valueType<Animation>();
+template const ValueType& valueType<Callout>();
 template const ValueType& valueType<CompareVariant>();
 template const ValueType& valueType<CompareView>();
 template const ValueType& valueType<CurvesView>();
@@ -18,6 +19,7 @@ template const ValueType& valueType<LayersView>();
 template const ValueType& valueType<LogView>();
 template const ValueType& valueType<ObliqueView>();
 template const ValueType& valueType<ParallelCoordinatesView>();
+template const ValueType& valueType<PiecesView>();
 template const ValueType& valueType<Probe>();
 template const ValueType& valueType<ProbesView>();
 template const ValueType& valueType<ProfileView>();
@@ -60,6 +62,7 @@ template const ValueType& valueType<vis::Selection>();
 template const ValueType& valueType<vis::SilhouetteEnhancement>();
 template const ValueType& valueType<vis::SliceLayer>();
 template const ValueType& valueType<vis::SphereRegion>();
+template const ValueType& valueType<vis::Strokes>();
 template const ValueType& valueType<vis::Tone>();
 template const ValueType& valueType<vis::TransferFunction>();
 template const ValueType& valueType<vis::TransferRegion>();
@@ -68,6 +71,8 @@ template const ValueType& valueType<vis::WarmCool>();
 template const ValueType& valueType<volume::DerivedParameter>();
 template const ValueType& valueType<volume::DifferenceRecipe>();
 template const ValueType& valueType<volume::ExpressionRecipe>();
+template const ValueType& valueType<volume::PiecesRecipe>();
 template const ValueType& valueType<volume::SmoothRecipe>();
+template const ValueType& valueType<volume::UncertaintyRecipe>();
 
 } // namespace tessera::app

@@ -7,6 +7,7 @@ namespace tessera::app {
 
 // Types of sessions and of what they are made of. Their descriptions are much to compile: session_types.cpp alone does.
 extern template const ValueType& valueType<Animation>();
+extern template const ValueType& valueType<Callout>();
 extern template const ValueType& valueType<CompareVariant>();
 extern template const ValueType& valueType<CompareView>();
 extern template const ValueType& valueType<CurvesView>();
@@ -22,6 +23,7 @@ extern template const ValueType& valueType<LayersView>();
 extern template const ValueType& valueType<LogView>();
 extern template const ValueType& valueType<ObliqueView>();
 extern template const ValueType& valueType<ParallelCoordinatesView>();
+extern template const ValueType& valueType<PiecesView>();
 extern template const ValueType& valueType<Probe>();
 extern template const ValueType& valueType<ProbesView>();
 extern template const ValueType& valueType<ProfileView>();
@@ -64,6 +66,7 @@ extern template const ValueType& valueType<vis::Selection>();
 extern template const ValueType& valueType<vis::SilhouetteEnhancement>();
 extern template const ValueType& valueType<vis::SliceLayer>();
 extern template const ValueType& valueType<vis::SphereRegion>();
+extern template const ValueType& valueType<vis::Strokes>();
 extern template const ValueType& valueType<vis::Tone>();
 extern template const ValueType& valueType<vis::TransferFunction>();
 extern template const ValueType& valueType<vis::TransferRegion>();
@@ -72,6 +75,8 @@ extern template const ValueType& valueType<vis::WarmCool>();
 extern template const ValueType& valueType<volume::DerivedParameter>();
 extern template const ValueType& valueType<volume::DifferenceRecipe>();
 extern template const ValueType& valueType<volume::ExpressionRecipe>();
+extern template const ValueType& valueType<volume::PiecesRecipe>();
 extern template const ValueType& valueType<volume::SmoothRecipe>();
+extern template const ValueType& valueType<volume::UncertaintyRecipe>();
 
 } // namespace tessera::app

@@ -71,6 +71,8 @@ template <class Lists, class Of> Lists listsOf(Of& session) {
     for (auto& [pane, view] : session.views)
         if (auto* const volume = std::get_if<VolumeView>(&view); volume && volume->layers)
             lists.push_back(&*volume->layers);
+    for (auto& callout : session.callouts)
+        if (callout.layers) lists.push_back(&*callout.layers);
     return lists;
 }
 

@@ -60,7 +60,7 @@ private:
 /// A session that shares what a volume view shows.
 Session sessionShownIn(const Session& session, const std::string& pane);
 
-/// Every list of layers: the shared one, and those of volume views.
+/// Every list of layers: the shared one, those of volume views, and those of callouts.
 std::vector<std::vector<vis::Layer>*> layerLists(Session& session);
 std::vector<const std::vector<vis::Layer>*> layerLists(const Session& session);
 

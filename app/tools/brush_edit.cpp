@@ -3,9 +3,11 @@
 #include "app/pane/view_context.h"
 #include "app/tools/brush_shape.h"
 #include "app/ui/keys.h"
+#include "app/values/plot.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tessera::app {
 
@@ -46,23 +48,6 @@ vis::Region newRegion(const PlotChannels& plot, const BrushPen& pen) {
     range.intervals.push_back({.channel = plot.x});
     if (two) range.intervals.push_back({.channel = plot.y});
     return range;
-}
-
-/// Adds the brush of a drag that has gone far enough; brushes of the same plot make room unless a modifier keeps them.
-void beginBrush(BrushDrag& drag, vis::Selection& selection, const BrushPen& pen, bool add, bool subtract) {
-    const auto samePlot = [&](const vis::Brush& brush) {
-        const std::size_t wanted = drag.plot.y.empty() ? 1 : 2;
-        return vis::regionChannels(brush.region).size() == wanted && brushFits(brush, drag.plot);
-    };
-    if (!add && !subtract) std::erase_if(selection.brushes, samePlot);
-    vis::Brush brush;
-    const PlotChannels& plot = drag.plot;
-    brush.name = newBrushName(selection, plot.y.empty() || plot.y == plot.x ? plot.x : plot.x + " \u00d7 " + plot.y);
-    brush.color = newBrushColor(selection);
-    brush.combine = subtract ? vis::BrushCombine::Minus : add ? vis::BrushCombine::Or : vis::BrushCombine::And;
-    brush.region = newRegion(plot, pen);
-    selection.brushes.push_back(brush);
-    drag.brush = static_cast<int>(selection.brushes.size()) - 1;
 }
 
 /// One more corner of a lasso, where the mouse has moved far enough from the last one.
@@ -135,6 +120,49 @@ BrushHit hitBrush(const vis::Selection& selection, const PlotFrame& frame, const
     return {};
 }
 
+void pressBrush(BrushDrag& drag, vis::Selection& selection, const PlotChannels& plot, BrushHit hit, glm::dvec2 start) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+        // Modifiers always start a new brush, also on top of another.
+        const bool fresh = hit.brush < 0 || io.KeyShift || io.KeyCtrl;
+        drag = {.active = true,
+                .made = fresh,
+                .plot = plot,
+                .brush = fresh ? -1 : hit.brush,
+                .edges = fresh ? 0 : hit.edges,
+                .start = start,
+                .original = selection,
+                .asksToClear = false};
+    } else if (ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
+               ImGui::GetMouseDragDelta(ImGuiMouseButton_Right).x == 0) {
+        if (hit.brush >= 0)
+            selection.brushes.erase(selection.brushes.begin() + hit.brush);
+        else if (selection.brushes.size() == 1)
+            selection.brushes.clear();
+        else
+            drag.asksToClear = !selection.brushes.empty();
+    }
+}
+
+void addDragged(BrushDrag& drag, vis::Selection& selection, vis::Region region) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const std::vector<std::string> channels = vis::regionChannels(region);
+    if (!io.KeyShift && !io.KeyCtrl)
+        std::erase_if(selection.brushes, [&](const vis::Brush& brush) {
+            return vis::regionChannels(brush.region).size() == channels.size() && brushFits(brush, drag.plot);
+        });
+    vis::Brush brush;
+    const PlotChannels& plot = drag.plot;
+    brush.name = newBrushName(selection, channels.size() < 2 ? plot.x : plot.x + " \u00d7 " + plot.y);
+    brush.color = newBrushColor(selection);
+    brush.combine = io.KeyCtrl    ? vis::BrushCombine::Minus
+                    : io.KeyShift ? vis::BrushCombine::Or
+                                  : vis::BrushCombine::And;
+    brush.region = std::move(region);
+    selection.brushes.push_back(brush);
+    drag.brush = static_cast<int>(selection.brushes.size()) - 1;
+}
+
 bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot,
                  const BrushPen& pen) {
     const ImGuiIO& io = ImGui::GetIO();
@@ -144,26 +172,7 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
     if (hovered && !drag.active) {
         const BrushHit hit = hitBrush(selection, frame, plot, io.MousePos);
         if (hit.brush >= 0) showCursor(hit.edges);
-        if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-            // Modifiers always start a new brush, also on top of another.
-            const bool fresh = hit.brush < 0 || io.KeyShift || io.KeyCtrl;
-            drag = {.active = true,
-                    .made = fresh,
-                    .plot = plot,
-                    .brush = fresh ? -1 : hit.brush,
-                    .edges = fresh ? 0 : hit.edges,
-                    .start = frame.data(io.MousePos),
-                    .original = selection,
-                    .asksToClear = false};
-        } else if (ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
-                   ImGui::GetMouseDragDelta(ImGuiMouseButton_Right).x == 0) {
-            if (hit.brush >= 0)
-                selection.brushes.erase(selection.brushes.begin() + hit.brush);
-            else if (selection.brushes.size() == 1)
-                selection.brushes.clear();
-            else
-                drag.asksToClear = !selection.brushes.empty();
-        }
+        pressBrush(drag, selection, plot, hit, frame.data(io.MousePos));
     }
     // Esc first: with keyboard navigation ImGui deactivates the item before it can be seen below.
     if (drag.active && keyPressed(key::kEscape)) {
@@ -177,7 +186,7 @@ bool editBrushes(BrushDrag& drag, vis::Selection& selection, const PlotFrame& fr
             drag = {}; // the brush was removed meanwhile, e.g. by undo
         } else {
             if (drag.brush < 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left, reach()))
-                beginBrush(drag, selection, pen, io.KeyShift, io.KeyCtrl);
+                addDragged(drag, selection, newRegion(plot, pen));
             if (drag.brush >= 0 && drag.brush < static_cast<int>(selection.brushes.size())) {
                 if (!drag.made) showCursor(drag.edges);
                 dragBrush(drag, selection, frame, pen);
@@ -253,7 +262,7 @@ glm::vec3 newBrushColor(const vis::Selection& selection) {
 }
 
 ImU32 brushColor(glm::vec3 color, float alpha) {
-    color *= darkTheme() ? 1.0f : 0.7f;
+    color *= darkTheme() ? 1.0f : kBrightOnWhite;
     return ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, alpha});
 }
 ImU32 brushColor(const vis::Brush& brush, float alpha) {
@@ -267,7 +276,7 @@ ImU32 focusColor(const Session& session) {
             colors.push_back(brush.color);
     if (!session.selection.active())
         for (const vis::Lens& lens : session.lenses)
-            if (lens.enabled && lens.marks) colors.push_back(lens.color);
+            if (vis::marksAt(lens, session.time)) colors.push_back(lens.color);
     return colors.size() == 1 ? brushColor(colors.front()) : plotColors().focus;
 }
 

@@ -38,6 +38,14 @@ struct BrushHit {
 };
 BrushHit hitBrush(const vis::Selection& selection, const PlotFrame& frame, const PlotChannels& plot, ImVec2 at);
 
+/// What a press over the item hovered does: the left button begins the drag of the brush hit, or of a new one, where no
+/// brush is or with a modifier; the right one removes the brush hit, or a lone one, or asks to. `start`: the values
+/// there.
+void pressBrush(BrushDrag& drag, vis::Selection& selection, const PlotChannels& plot, BrushHit hit, glm::dvec2 start);
+/// Adds the brush of a drag that has gone far enough; unless a modifier keeps them, those of the same parameters make
+/// room.
+void addDragged(BrushDrag& drag, vis::Selection& selection, vis::Region region);
+
 /// Handles the mouse on a plot whose InvisibleButton (left and right) was the last ImGui item; returns true when the
 /// selection changed. Left drag on the plot creates a brush and replaces those of this plot; with Shift it is added
 /// ("or"), with Ctrl it is subtracted ("minus"). Dragging a brush moves it, dragging its edges and corners resizes it;

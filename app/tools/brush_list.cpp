@@ -1,5 +1,6 @@
 #include "app/tools/brush_list.h"
 
+#include "app/edits/add_callout.h"
 #include "app/edits/scene_task.h"
 #include "app/pane/view_parts.h"
 #include "app/tools/brush_edit.h"
@@ -66,7 +67,8 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index, std::
     }
     const float buttons = ImGui::GetFrameHeight() * 2 + em() * 0.9f;
     ImGui::SetNextItemWidth(std::max(em() * 3, ImGui::GetContentRegionAvail().x - buttons));
-    ImGui::InputText("##name", &brush.name);
+    const std::string called = brush.name;
+    if (ImGui::InputText("##name", &brush.name)) renameCallouts(context.session, CalloutOf::Brush, called, brush.name);
     ImGui::SameLine(0, em() * 0.3f);
     if (iconButton(context, "invert", icons::kInvert, "Select what lies outside", true, brush.inverted))
         brush.inverted = !brush.inverted;
@@ -90,6 +92,9 @@ bool drawBrush(ViewContext& context, vis::Brush& brush, std::size_t index, std::
             std::visit([&](auto& region) { drawDescribed(region, widgets); }, brush.region);
         }
         mend(brush.region);
+        if (ImGui::SmallButton("Callout") && takesCallout(context.session))
+            addCallout(context.session, info, CalloutOf::Brush, brush.name);
+        if (ImGui::IsItemHovered()) tooltip("Show what it holds enlarged beside the volume");
         ImGui::TreePop();
     }
     ImGui::Unindent(em() * 1.6f);
@@ -119,7 +124,10 @@ void drawBrushList(ViewContext& context, NextEntry next) {
         if (drawBrush(context, selection.brushes[i], i, next.unfolds(i))) removed = static_cast<int>(i);
         ImGui::PopID();
     }
-    if (removed >= 0) selection.brushes.erase(selection.brushes.begin() + removed);
+    if (removed >= 0) {
+        removeCallouts(context.session, CalloutOf::Brush, selection.brushes[std::size_t(removed)].name);
+        selection.brushes.erase(selection.brushes.begin() + removed);
+    }
     if (selection.brushes.empty()) faintText("No brushes: drag in a plot to select.");
     if (const std::string together = combinationText(selection); !together.empty()) {
         ImGui::PushTextWrapPos();

@@ -5,6 +5,7 @@
 #include "app/tools/profile_line.h"
 #include "app/tools/space_handles.h"
 #include "vis/glyphs/glyph_places.h"
+#include "volume/flow/seeds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,14 +26,6 @@ std::vector<SpaceHandle> radialHandles(glm::dvec3 center, glm::dvec3 radius, con
         handles.push_back({.at = axes.toSpace(end), .axis = axis});
     }
     return handles;
-}
-
-/// The axis across which seeds of a plane lie in the middle (volume/flow/seeds.cpp).
-int thinnest(glm::dvec3 edges) {
-    int axis = 0;
-    for (int i = 1; i < 3; ++i)
-        if (edges[i] < edges[axis]) axis = i;
-    return axis;
 }
 
 /// Corners of where seeds or glyphs begin.
@@ -152,7 +145,7 @@ void addRake(std::vector<HandledObject>& objects, const Session& session, const 
         };
     } else if (*shape == volume::SeedShape::Plane) {
         const glm::dvec3 edges = glm::abs((axes.toSheet(to) - axes.toSheet(from)) * session.stretch);
-        const int across = glyphs ? vis::thinnestAxis(edges) : thinnest(edges);
+        const int across = glyphs ? vis::thinnestAxis(edges) : volume::thinnestAxis(edges);
         handlePlane(object, from, to, middle, across, shares, index);
     } else {
         const bool everything = rake.from == glm::vec3(0) && rake.to == glm::vec3(1);

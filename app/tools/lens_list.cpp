@@ -1,6 +1,7 @@
 #include "app/tools/lens_list.h"
 
 #include "app/data/first_view.h"
+#include "app/edits/add_callout.h"
 #include "app/edits/add_layer.h"
 #include "app/edits/scene_task.h"
 #include "app/pane/view_parts.h"
@@ -56,7 +57,7 @@ std::string layersOf(const Session& session, const std::string& lens) {
 void drawStatistics(ViewContext& context, const std::string& pane, LensStatistics& statistics, const vis::Lens& lens) {
     const volume::DatasetInfo& info = context.numbers->info();
     const std::vector<int> shown = chosenChannels(info, {}, 12);
-    if (shown.empty() || !lens.enabled) return;
+    if (shown.empty() || !vis::activeAt(lens, context.session.time) || !lens.inSpace()) return;
     BrushedQuery query;
     query.channels = shown;
     const std::vector<volume::Channel> channels = info.channels();
@@ -175,7 +176,8 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
     }
     const std::string inside = layersOf(session, lens.name);
     const std::string text = std::string(vis::kLensShapeNames[static_cast<std::size_t>(lens.shape)]) +
-                             (inside.empty() ? "" : "  with " + inside);
+                             (inside.empty() ? "" : "  with " + inside) +
+                             (lens.enabled && !vis::activeAt(lens, session.time) ? ", not at this time" : "");
     if (fittedTreeNode(text, "lens", unfold)) {
         const WidgetContext widgets{.info = &context.source->info()};
         vis::Lens edited = lens;
@@ -185,7 +187,15 @@ RowAction drawLens(ViewContext& context, const std::string& pane, LensStatistics
             edited.name = lens.name;
         }
         lens = edited;
-        if (ImGui::SmallButton("To the cross-hair")) lens.center = session.cursor;
+        if (lens.inSpace()) {
+            if (ImGui::SmallButton("To the cross-hair")) lens.center = session.cursor;
+            ImGui::SameLine();
+        } else if (!session.selection.active()) {
+            faintText("No brush is in use: everything is inside.");
+        }
+        if (ImGui::SmallButton("Callout") && takesCallout(session))
+            addCallout(session, context.source->info(), CalloutOf::Lens, lens.name);
+        if (ImGui::IsItemHovered()) tooltip("Show its inside enlarged beside the volume");
         drawStatistics(context, pane, statistics, lens);
         ImGui::TreePop();
     }
@@ -246,6 +256,7 @@ void renameLens(Session& session, std::size_t index, const std::string& name) {
         if (auto* region = std::get_if<vis::LensRegion>(&brush.region);
             region && region->lens == before && !before.empty())
             region->lens = now;
+    renameCallouts(session, CalloutOf::Lens, before, now);
 }
 
 void moveLens(Session& session, std::size_t from, std::size_t to) {
@@ -268,6 +279,7 @@ void removeLens(Session& session, std::size_t index) {
         const auto* region = std::get_if<vis::LensRegion>(&brush.region);
         return region && region->lens == name && !name.empty();
     });
+    removeCallouts(session, CalloutOf::Lens, name);
 }
 
 void drawLensMenu(ViewContext& context) {

@@ -28,12 +28,15 @@ private:
     DashPattern pattern_;
 };
 
-/// Calls `each(index, lens, placed)` for the lenses that act.
+/// Calls `each(index, lens, placed)` for the lenses that act at the time shown and have a place in space.
 template <class Each> void eachLens(const Session& session, const vis::WorldFrame& world, const Each& each) {
-    const auto placed = vis::placeLenses(session.lenses, world, session.camera, session.cursor);
+    const auto placed = vis::placeLenses(session.lenses, world, session.camera, session.cursor, session.time);
     std::size_t next = 0;
-    for (std::size_t i = 0; i < session.lenses.size() && next < placed.size(); ++i)
-        if (session.lenses[i].enabled) each(static_cast<int>(i), session.lenses[i], placed[next++]);
+    for (std::size_t i = 0; i < session.lenses.size() && next < placed.size(); ++i) {
+        const vis::Lens& lens = session.lenses[i];
+        if (!vis::activeAt(lens, session.time)) continue;
+        if (const vis::PlacedLens& own = placed[next++]; lens.inSpace()) each(static_cast<int>(i), lens, own);
+    }
 }
 
 } // namespace tessera::app

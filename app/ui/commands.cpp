@@ -221,6 +221,7 @@ std::vector<KeyHelp> keyHelp(const std::vector<Command>& commands, const std::st
           {"Drag of a dot", "Handle: move",
            "Shift: nearer or farther; the tip of an arrow tilts a plane, turns a light"},
           {"Drag in a slice", "Cross-hair", "The wheel steps along the normal; Shift: ten at a time"},
+          {"Drag in a callout", "Callout: turn", "Ctrl: with the view; wheel: magnify; double click: as the view"},
           {"Drag in a plot", "Brush", "Shift adds, Ctrl removes; drag a brush to move it, its edges to resize"},
           {"Drag in a HyperSlice", "Cross-hair, time", "Shift: a box to zoom to; a double middle click shows all"},
           {"Wheel in a plot", "Zoom", "Middle drag pans"},

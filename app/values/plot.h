@@ -15,6 +15,9 @@
 /// A plot as a value: said once, and drawn on screen and on pages.
 namespace tessera::app {
 
+/// Factor on bright colours, such as those of brushes and lenses, which would vanish on white.
+inline constexpr float kBrightOnWhite = 0.7f;
+
 struct PlotAxis {
     std::string title; ///< with its unit, where that is not stated below
     Range range;
@@ -54,6 +57,13 @@ struct PlotLabel {
     double angle = 0; ///< degrees, clockwise
 };
 
+/// A line whose width is a quantity, in the values of the axes; nowhere thinner than other lines.
+struct PlotFlow {
+    std::vector<glm::dvec2> points; ///< of its middle, from the left to the right
+    std::vector<double> half;       ///< for each point half its width
+    glm::vec4 color{0, 0, 0, 1};
+};
+
 /// A closed line, in the values of the axes; drawn where it lies between them.
 struct PlotOutline {
     std::vector<glm::dvec2> points;
@@ -82,6 +92,7 @@ struct Plot {
     std::optional<double> cursorX = {}, cursorY = {}; ///< lines across the plot
     std::vector<PlotBand> brushed = {};
     PlotColorKey key = {};              ///< of the picture
+    std::vector<PlotFlow> flows = {};   ///< below the series
     bool framed = true;                 ///< else what it holds stands without frame and axes
     std::optional<PlotAxis> right = {}; ///< a second vertical axis, of some of the series
 

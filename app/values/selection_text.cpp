@@ -157,7 +157,7 @@ std::string selectionName(const Session& session) {
     if (!selection.active()) {
         std::string names;
         for (const vis::Lens& lens : session.lenses)
-            if (lens.enabled && lens.marks) names += (names.empty() ? "lens " : ", ") + lens.name;
+            if (vis::marksAt(lens, session.time)) names += (names.empty() ? "lens " : ", ") + lens.name;
         return names;
     }
     if (enabledBrushes(selection).size() > 1 && !selection.name.empty()) return selection.name;

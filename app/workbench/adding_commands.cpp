@@ -1,3 +1,5 @@
+#include "app/callouts/callout_menu.h"
+#include "app/edits/add_callout.h"
 #include "app/edits/context_style.h"
 #include "app/edits/scene_task.h"
 #include "app/pane/view_parts.h"
@@ -66,7 +68,8 @@ void addLayers(SceneChanges& list) {
         {{"Add volume layer", "Draw a parameter as a volume", "new fog rays rendering"},
          {"Add iso-surface layer", "Draw the surface where a parameter has one value", "new isosurface contour"},
          {"Add slice layer", "Draw a parameter on a plane in space", "new cut section oblique"},
-         {"Add flow layer", "Draw streamlines of a vector", "new streamlines stream lines pathlines arrows vectors"},
+         {"Add flow layer", "Draw streamlines of a vector",
+          "new streamlines stream lines pathlines streaklines timelines speedlines particles arrows vectors"},
          {"Add glyph layer", "Draw figures whose parts show many parameters at once",
           "new glyphs icons stars bars pies jumping jacks superquadrics tensors ellipsoids"}}};
     for (std::size_t kind = 0; kind < kLayers.size(); ++kind) {
@@ -81,6 +84,18 @@ void addLayers(SceneChanges& list) {
                        (kind != 3 || !firstVector(workbench.document().info()).empty());
             });
     }
+    list.add(
+        SceneTask::Layers, "Add slice with strokes", "Draw a parameter on a plane, with fine strokes along a vector",
+        "new cut section flow lic line integral convolution texture direction",
+        [&workbench](Session& session, const volume::DatasetInfo& info) {
+            addLayer(session, *workbench.source(), 2);
+            if (auto* const slice = std::get_if<vis::SliceLayer>(&session.layers.back().technique))
+                slice->strokes.vector = firstVector(info);
+        },
+        [&workbench] {
+            return workbench.document().session().layers.size() < kMostLayers &&
+                   !firstVector(workbench.document().info()).empty();
+        });
 }
 
 /// Lenses at the cross-hair.
@@ -96,6 +111,12 @@ void addLenses(SceneChanges& list) {
                  "new magnifier region", [effect = effect](Session& session, const volume::DatasetInfo& info) {
                      addLens(session, info, effect);
                  });
+    list.add(SceneTask::Lenses, "Lens: what is brushed",
+             "Add a lens that is as large as what the brushes select, such as a region or the inside of a surface",
+             "new selection region iso-surface shape", [](Session& session, const volume::DatasetInfo& info) {
+                 addLens(session, info, vis::LensEffect::Replace);
+                 session.lenses.back().shape = vis::LensShape::Selection;
+             });
     list.add(
         SceneTask::Lenses, "Lens: another parameter",
         "Add a lens at the cross-hair in which a parameter not shown yet is drawn instead",
@@ -138,6 +159,28 @@ void addBrushes(SceneChanges& list) {
         [&workbench] { return workbench.session().selection.active(); });
 }
 
+/// Details beside the volume.
+void addCallouts(SceneChanges& list) {
+    Workbench& workbench = list.workbench;
+    static constexpr const char* kWords = "new exovis detail inset magnifier zoom enlarge outside";
+    list.add(
+        SceneTask::Lenses, "Callout of lens",
+        "Show what is inside the newest lens, or around the cross-hair, enlarged beside the volume", kWords,
+        [](Session& session, const volume::DatasetInfo& info) { calloutOfLens(session, info); },
+        [&workbench] { return takesCallout(workbench.session()); });
+    list.add(
+        SceneTask::Lenses, "Callout of plane",
+        "Show the oblique slice, or a plane at the cross-hair, flat beside the volume", kWords,
+        [](Session& session, const volume::DatasetInfo& info) {
+            addCallout(session, info, CalloutOf::Plane, firstPlane(session));
+        },
+        [&workbench] { return takesCallout(workbench.session()); });
+    list.add(
+        SceneTask::Lenses, "Callout of brush", "Show what the newest brush holds enlarged beside the volume", kWords,
+        [](Session& session, const volume::DatasetInfo& info) { calloutOfBrush(session, info); },
+        [&workbench] { return takesCallout(workbench.session()) && !workbench.session().selection.brushes.empty(); });
+}
+
 /// Clips of each kind, and a light.
 void addClipsAndLights(SceneChanges& list) {
     for (std::size_t kind = 0; kind < std::size(vis::kClipKindNames); ++kind)
@@ -160,6 +203,7 @@ std::vector<Command> addingCommands(Workbench& workbench) {
     addLayers(list);
     addLenses(list);
     addBrushes(list);
+    addCallouts(list);
     addClipsAndLights(list);
     list.add(
         SceneTask::Picture, "True proportions", "Show the data without stretch",

@@ -139,22 +139,23 @@ std::vector<Command> latticeCommands(Workbench& workbench) {
         ShownGrids grids;
         const char* name;
     };
-    for (const Grids& one : {Grids{ShownGrids::Both, "-Both grids of D4* at every time"},
-                             {ShownGrids::First, "First grid of D4* alone, as stored"},
-                             {ShownGrids::Second, "Second grid of D4* alone, as stored"}})
+    for (const Grids& one : {Grids{ShownGrids::Both, "-Both grids of D4* or BCC"},
+                             {ShownGrids::First, "First grid of D4* or BCC alone, as stored"},
+                             {ShownGrids::Second, "Second grid of D4* or BCC alone, as stored"}})
         commands.push_back(
             {.menu = "Edit",
              .name = one.name,
-             .help =
-                 "Choose what is shown of an archive on the lattice in space and time: both of its grids, of which one "
-                 "is computed from other times, or the stored times of one",
-             .words = "lattice frames sublattice space and time four-dimensional",
+             .help = "Choose what is shown of an archive on the body-centred lattice, or on that in space and time: "
+                     "both of "
+                     "its grids (of D4* one is computed from other times), or one alone with its samples as stored",
+             .words = "lattice bcc frames sublattice space and time four-dimensional",
              .run = [&workbench, grids = one.grids] { workbench.session().data.grids = grids; },
              .enabled =
                  [&workbench] {
                      const Document& document = workbench.document();
                      return document.loaded() && isArchive(document.session().data) &&
-                            document.sources().origin.lattice.ends_with("D4*");
+                            (document.sources().origin.lattice.ends_with("D4*") ||
+                             document.sources().origin.lattice.ends_with("BCC"));
                  },
              .checked = [&workbench, grids = one.grids] { return workbench.session().data.grids == grids; }});
     return commands;

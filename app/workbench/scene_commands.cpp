@@ -178,7 +178,8 @@ std::vector<Command> decorationCommands(Workbench& workbench) {
           {"Show direction gizmo", &VolumeView::showGizmo, "triad orientation xyz hide"},
           {"Show scale bar", &VolumeView::showScaleBar, "length ruler hide"},
           {"Show outlines and handles", &VolumeView::showLenses, "lenses seeds brushes planes hide"},
-          {"Show handles of lights", &VolumeView::showLights, "drag light direction lamp arrows hide"}})
+          {"Show handles of lights", &VolumeView::showLights, "drag light direction lamp arrows hide"},
+          {"Show callouts", &VolumeView::showCallouts, "details insets exovis beside hide"}})
         commands.push_back({.menu = "",
                             .name = name,
                             .help = "Draw it in the volume view used last, or leave it out",

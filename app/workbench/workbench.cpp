@@ -164,7 +164,14 @@ ViewContext Workbench::viewContext() {
                         }
                     });
                 },
-            .interacting = ImGui::IsAnyItemActive()};
+            .interacting = interacting()};
+}
+
+bool Workbench::interacting() {
+    constexpr double kRest = 0.4; // s
+    if (!typing()) return ImGui::IsAnyItemActive();
+    if (otherKeyHeld() || !ImGui::GetIO().InputQueueCharacters.empty()) typed_ = now();
+    return now() - typed_ < kRest;
 }
 
 std::string Workbench::whyEmpty() const {

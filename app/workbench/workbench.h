@@ -134,6 +134,9 @@ private:
     void exportFigure(const std::string& path, std::function<VectorPage(const Progress&)> make);
 
     double now() const; ///< s
+    /// An item is held; a field of text only while keys are pressed in it, so that pictures are refined once these
+    /// rest.
+    bool interacting();
     ViewContext viewContext();
     void pressKeys();
     void drawPaletteOfAll();
@@ -171,6 +174,7 @@ private:
 
     std::optional<PictureJob> picture_;
     bool quit_ = false, busy_ = true, hurries_ = true;
+    double typed_ = -1e9;     ///< when a key was last pressed in a field of text
     bool popupShown_ = false; ///< at the start of the last frame
     Jobs jobs_;               ///< last: its threads end before what they refer to
 };

@@ -52,6 +52,24 @@ double samplesWhere(double time, const std::function<bool(const std::function<do
     return count;
 }
 
+TEST(Branches, AnAnswerStandsForOneWithOneOtherBrushAlone) {
+    const auto source = cell();
+    Session session;
+    session.selection.brushes = brushes();
+    const BranchesQuery shown = branchesQuery(session, source->info());
+    const auto changed = [&](const std::function<void(std::vector<vis::Brush>&)>& change) {
+        Session other = session;
+        change(other.selection.brushes);
+        return sameButOne(shown, branchesQuery(other, source->info()));
+    };
+    const auto drag = [](vis::Brush& brush) { std::get<vis::RangeRegion>(brush.region).intervals[0].hi += 1; };
+    EXPECT_TRUE(changed([](auto&) {}));
+    EXPECT_TRUE(changed([&](auto& all) { drag(all[2]); })) << "one is dragged";
+    EXPECT_FALSE(changed([&](auto& all) { drag(all[0]), drag(all[2]); }));
+    EXPECT_FALSE(changed([](auto& all) { std::swap(all[0], all[1]); })) << "their names would be at other numbers";
+    EXPECT_FALSE(changed([](auto& all) { all.pop_back(); }));
+}
+
 TEST(Branches, EveryPathHoldsWhatItsBrushesSay) {
     const std::vector<vis::Brush> all = brushes();
     const Branches branches = counted(all);

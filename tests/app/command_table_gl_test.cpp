@@ -21,38 +21,39 @@ using Check = std::function<void(const Session& before, const Session& after)>;
 
 /// Commands that change no session, with the test that tries them.
 const std::set<std::string> kElsewhere = {
-    "Open...",                                 // tests/e2e/window.sh
-    "Save session",                            // WorkbenchLeaving.ACancelledSaveLeavesEverythingAsItIs
-    "Save session as...",                      // the same
-    "Pack into an archive...",                 // WorkbenchData.WhatIsEditedWhilePackingStays
-    "Compare with another file...",            // ComparedFiles
-    "Save picture...",                         // tests/e2e/window.sh
-    "Export table...",                         // Palette.TheTableOfThePaneClickedLastIsExported
-    "Save the selection as a table...",        // Palette.TheSelectionIsSavedAsATable
-    "Export surface...",                       // AsyncQueries, tests/e2e/mesh.sh
-    "Both grids of D4* at every time",         // WorkbenchData.OneGridOfAnArchiveInSpaceAndTimeIsAStepOfTheHistory
-    "First grid of D4* alone, as stored",      // the same
-    "Second grid of D4* alone, as stored",     // the same
-    "Draw grids with uneven spacing to scale", // UnevenData.PicturesToScaleAreAStepOfTheHistory
-    "Cancel jobs",                             // WorkbenchData.CancelJobsLeavesThoseThatAreNotListed
-    "Copy session",                            // CommandTable.ASessionGoesThroughTheClipboard
-    "Paste session",                           // the same
-    "Quit",                                    // WorkbenchGl.WhatIsNotSavedIsNotGivenUpUnasked
-    "Undo",                                    // every case here
-    "Redo",                                    // every case here
-    "Add flow layer",                          // Palette.FindsByOtherWords
-    "Seed brushed",                            // Palette.ALensOfAnotherParameterAndSeedsInTheSelectionAreOneStepEach
-    "Add derived parameter: divergence",       // Palette.FindsByOtherWords, they need a vector
-    "Add derived parameter: vorticity",        // the same
-    "Lens: another parameter",                 // the same
-    "Data in space",                           // TimeAlongWorkbench.TheDataInSpaceStandBesideAsTheyWere
-    "Shortcuts",                               // CommandTable.HelpAndPaletteOpen
-    "Menu bar",                                // Keyboard.AltAndF10OpenTheMenusAndArrowsWalkThem
-    "Next part of the window",                 // Keyboard.F6GoesToEveryPaneAndBack
-    "Previous part of the window",             // the same
-    "Next tab",                                // Keyboard.CtrlPageDownGoesThroughTheTabs
-    "Previous tab",                            // the same
-    "Command palette",                         // the same
+    "Open...",                                    // tests/e2e/window.sh
+    "Save session",                               // WorkbenchLeaving.ACancelledSaveLeavesEverythingAsItIs
+    "Save session as...",                         // the same
+    "Pack into an archive...",                    // WorkbenchData.WhatIsEditedWhilePackingStays
+    "Compare with another file...",               // ComparedFiles
+    "Save picture...",                            // tests/e2e/window.sh
+    "Export table...",                            // Palette.TheTableOfThePaneClickedLastIsExported
+    "Save the selection as a table...",           // Palette.TheSelectionIsSavedAsATable
+    "Export surface...",                          // AsyncQueries, tests/e2e/mesh.sh
+    "Both grids of D4* or BCC",                   // WorkbenchData.OneGridOfAnArchiveInSpaceAndTimeIsAStepOfTheHistory
+    "First grid of D4* or BCC alone, as stored",  // the same
+    "Second grid of D4* or BCC alone, as stored", // the same
+    "Draw grids with uneven spacing to scale",    // UnevenData.PicturesToScaleAreAStepOfTheHistory
+    "Cancel jobs",                                // WorkbenchData.CancelJobsLeavesThoseThatAreNotListed
+    "Copy session",                               // CommandTable.ASessionGoesThroughTheClipboard
+    "Paste session",                              // the same
+    "Quit",                                       // WorkbenchGl.WhatIsNotSavedIsNotGivenUpUnasked
+    "Undo",                                       // every case here
+    "Redo",                                       // every case here
+    "Add flow layer",                             // Palette.FindsByOtherWords
+    "Add slice with strokes",                     // Palette.AddsWhatItNames
+    "Seed brushed",                               // Palette.ALensOfAnotherParameterAndSeedsInTheSelectionAreOneStepEach
+    "Add derived parameter: divergence",          // Palette.FindsByOtherWords, they need a vector
+    "Add derived parameter: vorticity",           // the same
+    "Lens: another parameter",                    // the same
+    "Data in space",                              // TimeAlongWorkbench.TheDataInSpaceStandBesideAsTheyWere
+    "Shortcuts",                                  // CommandTable.HelpAndPaletteOpen
+    "Menu bar",                                   // Keyboard.AltAndF10OpenTheMenusAndArrowsWalkThem
+    "Next part of the window",                    // Keyboard.F6GoesToEveryPaneAndBack
+    "Previous part of the window",                // the same
+    "Next tab",                                   // Keyboard.CtrlPageDownGoesThroughTheTabs
+    "Previous tab",                               // the same
+    "Command palette",                            // the same
     "About Tessera",
     "One view per parameter", // Multiples.ShowEachParameterAndUndoRestoresTheDock
     "One view per time",      // Multiples.ShowTimesWithOneLegend
@@ -206,6 +207,21 @@ Check turned(bool VolumeView::*member) {
     };
 }
 
+Check calloutAdded(CalloutOf of, CalloutKind kind) {
+    return [of, kind](const Session& before, const Session& after) {
+        ASSERT_EQ(after.callouts.size(), before.callouts.size() + 1);
+        const Callout& added = after.callouts.back();
+        EXPECT_EQ(added.of, of);
+        EXPECT_EQ(added.kind, kind);
+        if (of == CalloutOf::Lens) {
+            EXPECT_EQ(added.placeholder, after.lenses.back().name);
+        }
+        if (of == CalloutOf::Brush) {
+            EXPECT_EQ(added.placeholder, after.selection.brushes.back().name);
+        }
+    };
+}
+
 const std::map<std::string, Check>& checks() {
     static const std::map<std::string, Check> all = [] {
         std::map<std::string, Check> made = {
@@ -263,12 +279,20 @@ const std::map<std::string, Check>& checks() {
                  lensAdded(vis::LensEffect::Replace)(before, after);
                  EXPECT_EQ(after.layers.back().lens, after.lenses.back().name);
              }},
+            {"Lens: what is brushed",
+             [](const Session& before, const Session& after) {
+                 lensAdded(vis::LensEffect::Replace)(before, after);
+                 EXPECT_EQ(after.lenses.back().shape, vis::LensShape::Selection);
+             }},
             {"Brush inside the lens",
              [](const Session& before, const Session& after) {
                  ASSERT_EQ(after.selection.brushes.size(), before.selection.brushes.size() + 1);
                  EXPECT_EQ(std::get<vis::LensRegion>(after.selection.brushes.back().region).lens,
                            before.lenses.back().name);
              }},
+            {"Callout of lens", calloutAdded(CalloutOf::Lens, CalloutKind::Scene)},
+            {"Callout of plane", calloutAdded(CalloutOf::Plane, CalloutKind::Slice)},
+            {"Callout of brush", calloutAdded(CalloutOf::Brush, CalloutKind::Scene)},
             {"Add clip: plane", clipAdded(vis::ClipKind::Plane)},
             {"Add clip: box", clipAdded(vis::ClipKind::Box)},
             {"Add clip: sphere", clipAdded(vis::ClipKind::Sphere)},
@@ -299,6 +323,7 @@ const std::map<std::string, Check>& checks() {
             {"Show scale bar", turned(&VolumeView::showScaleBar)},
             {"Show outlines and handles", turned(&VolumeView::showLenses)},
             {"Show handles of lights", turned(&VolumeView::showLights)},
+            {"Show callouts", turned(&VolumeView::showCallouts)},
             {"Depth of field",
              [](const Session& before, const Session& after) {
                  EXPECT_GT(after.camera.aperture, 0);
@@ -335,6 +360,7 @@ const std::map<std::string, Check>& checks() {
             {"Add derived parameter: gradient", derivedAdded("grad rho")},
             {"Add derived parameter: deviation over time", derivedAdded("deviation rho")},
             {"Add derived parameter: smoothed", derivedAdded("smooth rho")},
+            {"Add derived parameter: uncertainty of packing", derivedAdded("uncertainty rho")},
             {"Add derived parameter: position", derivedAdded("position")},
             {"Add derived parameter: time", derivedAdded("time")},
             {"Maximise pane", [](const Session& before,

@@ -63,8 +63,8 @@ protected:
 TEST(CommandsTable, HasEveryOptionThatChoosesAState) {
     CLI::App app;
     for (const auto add : {addCompareCommand, addConvertCommand, addDiffCommand, addGenerateCommand, addInfoCommand,
-                           addMeshCommand, addPackCommand, addPlotCommand, addRenderCommand, addReplayCommand,
-                           addStatsCommand, addUnpackCommand, addVerifyCommand})
+                           addMeshCommand, addPackCommand, addPiecesCommand, addPlotCommand, addRenderCommand,
+                           addReplayCommand, addStatsCommand, addUnpackCommand, addVerifyCommand})
         add(app);
     std::set<std::pair<std::string, std::string>> found;
     for (const CLI::App* command : app.get_subcommands({}))
@@ -77,8 +77,8 @@ TEST(CommandsTable, HasEveryOptionThatChoosesAState) {
 }
 
 TEST(CommandsTable, HelpOfEachCommandIsItsOwn) {
-    for (const char* name : {"compare", "convert", "diff", "generate", "info", "mesh", "pack", "plot", "render",
-                             "replay", "stats", "unpack", "verify"}) {
+    for (const char* name : {"compare", "convert", "diff", "generate", "info", "mesh", "pack", "pieces", "plot",
+                             "render", "replay", "stats", "unpack", "verify"}) {
         const char* words[] = {"tessera", name, "--help"};
         testing::internal::CaptureStdout();
         EXPECT_EQ(runCommandLine(3, words), 0);
@@ -92,8 +92,8 @@ TEST(CommandsTable, HelpListsThemAll) {
     testing::internal::CaptureStdout();
     EXPECT_EQ(runCommandLine(2, words), 0);
     const std::string said = testing::internal::GetCapturedStdout();
-    for (const char* name : {"bench", "compare", "convert", "diff", "generate", "info", "mesh", "pack", "plot",
-                             "render", "replay", "stats", "unpack", "verify"})
+    for (const char* name : {"bench", "compare", "convert", "diff", "generate", "info", "mesh", "pack", "pieces",
+                             "plot", "render", "replay", "stats", "unpack", "verify"})
         EXPECT_NE(said.find("\n  " + std::string(name) + " "), std::string::npos) << name;
 }
 

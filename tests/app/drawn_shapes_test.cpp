@@ -103,17 +103,17 @@ TEST_F(DrawnShapes, CornersOfATesseractAreColouredByTheFourthAxis) {
         return toColor({c.r, c.g, c.b}) & ~IM_COL32_A_MASK;
     };
     int seen = 0;
-    for (int i = 0; i < vis::kCorners4; ++i) {
-        const glm::dvec4 corner = vis::corner4(i, frame.half);
+    for (int i = 0; i < 16; ++i) {
+        const vis::PointN corner = vis::cornerOf(i, frame.half, 4);
         const ImVec2 at = frame.pixel(frame.project(corner).at);
         bool alone = true; // no other corner of the picture at the same place
-        for (int j = 0; j < vis::kCorners4; ++j) {
-            const ImVec2 other = frame.pixel(frame.project(vis::corner4(j, frame.half)).at);
+        for (int j = 0; j < 16; ++j) {
+            const ImVec2 other = frame.pixel(frame.project(vis::cornerOf(j, frame.half, 4)).at);
             if (j != i && std::hypot(other.x - at.x, other.y - at.y) < 12) alone = false;
         }
         if (!alone) continue;
         ++seen;
-        EXPECT_EQ(nearest(at), end(corner.w > 0 ? 1 : 0)) << i;
+        EXPECT_EQ(nearest(at), end(corner[3] > 0 ? 1 : 0)) << i;
     }
     EXPECT_GE(seen, 4);
 }
@@ -258,6 +258,35 @@ TEST(WallScene, HasTheWallAlone) {
             EXPECT_EQ(wall.layers.size(), 1u);
             EXPECT_TRUE(wall.lenses.empty());
         }
+}
+
+TEST(WallScene, HasLensesContoursAndALookWhereAFaceAsksForThem) {
+    vis::Scene scene;
+    scene.layers = {{"", true, vis::VolumeLayer{.channel = "T"}},
+                    {"", true, vis::IsoLayer{.channel = "O2"}, "round"},
+                    {"", true, vis::IsoLayer{.channel = "p"}, "flat"},
+                    {"", false, vis::IsoLayer{.channel = "H2"}, "round"}};
+    scene.lenses = {{.name = "round"}, {.name = "flat", .shape = vis::LensShape::Disc}};
+    scene.selection.brushes.resize(1);
+    const vis::WorldFrame world = vis::worldFrame({glm::dvec3(0), {2, 1, 1}}, glm::dvec3(1));
+    const auto wall = [&](const Wall& of) { return wallScene(scene, "T", of, kCubeFaces[2], world, {}); };
+    const vis::Scene slices = wall({.kind = WallKind::Slice, .contours = 7, .lenses = true});
+    ASSERT_EQ(slices.layers.size(), 2u) << "of the lens that stands in space, what is shown";
+    ASSERT_EQ(slices.lenses.size(), 1u);
+    for (const vis::Layer& layer : slices.layers) {
+        const auto& slice = std::get<vis::SliceLayer>(layer.technique);
+        EXPECT_EQ(slice.contours, 7);
+        EXPECT_EQ(slice.channel, layer.lens.empty() ? "T" : "O2");
+        EXPECT_EQ(layer.brushes, vis::BrushEffect::None);
+    }
+    EXPECT_TRUE(wall({.kind = WallKind::Shadow, .lenses = true}).lenses.empty());
+    const vis::Scene means = wall({.kind = WallKind::Mean, .lenses = true});
+    EXPECT_EQ(means.transfer.at("O2").opacity, means.transfer.at("T").opacity) << "means are opaque";
+    vis::Look look;
+    look.charcoal.emplace();
+    const vis::Scene volume = wall({.kind = WallKind::Volume, .look = look});
+    EXPECT_EQ(std::get<vis::VolumeLayer>(volume.layers[0].technique).look, look);
+    EXPECT_EQ(std::get<vis::VolumeLayer>(volume.layers[0].technique).style, vis::RayStyle::Composite);
 }
 
 } // namespace

@@ -431,6 +431,23 @@ TEST_F(PlaneHands, AClickInASliceOfTheMatrixGoesThere) {
     }
 }
 
+TEST_F(PlaneHands, AClickInASliceOfAnotherTimeGoesToThatTime) {
+    SliceMatrixView matrix;
+    matrix.channels = {"T", "|U|"};
+    matrix.columns = MatrixAxis::Times;
+    show(matrix, {640, 320});
+    const std::vector<double> times = workbench.document().info().times;
+    ASSERT_GE(times.size(), 2u);
+    const std::vector<ImRect> slices = pictures(); // time by time, parameter by parameter
+    ASSERT_EQ(slices.size(), 2 * std::min<std::size_t>(times.size(), 4));
+    const double deep = session().cursor.z;
+    click(within(slices.back(), 0.3, 0.4));
+    EXPECT_EQ(session().time, times.back());
+    EXPECT_NEAR(session().cursor.z, deep, kTiny) << "in the plane of the cross-hair";
+    click(within(slices.front(), 0.6, 0.5));
+    EXPECT_EQ(session().time, times.front());
+}
+
 TEST_F(PlaneHands, AveragesOverPlanesTakeTheCrossHairAlong) {
     for (int axis = 0; axis < 3; ++axis) {
         SCOPED_TRACE(axis);

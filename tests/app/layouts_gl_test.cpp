@@ -46,10 +46,12 @@ const std::vector<Shipped>& shipped() {
          "data layers slices timeline transfer volume",
          "O2 [mol/m³] = 2.5; T [K] 353.17 .. 356.60",
          {{"volume", Orange, 0.0588}, {"volume", Cold, 0.0292}, {"slices", Green, 0.0381}}},
+        {"branchingPulse", "data layers tesseract timeline transfer volume", "tracer [mol/m³] 0.00 .. 8.00", {}},
         {"charcoal",
          "data layers timeline transfer volume",
          "",
          {{"volume", Light, 0.86}, {"volume", Warm, 0}, {"volume", Cold, 0}}},
+        {"callouts", "data layers timeline transfer volume", "T [K] 353.17 .. 356.60; O2 [mol/m³] 0.02 .. 6.22", {}},
         // Several pictures beside each other are under test with the view itself.
         {"compareCompression", "compare data layers transfer", "O2 [mol/m³] = 2.5; T [K] 353.17 .. 356.60", {}},
         {"compareLattice", "compare data layers transfer", "rho = 0.5", {}},
@@ -104,6 +106,7 @@ const std::vector<Shipped>& shipped() {
          "data history layers scatterMatrix slices statistics timeline transfer volume",
          "T [K] 353.17 .. 356.60; O2 [mol/m³] 0.02 .. 6.22; O2 [mol/m³] = 2.2; |U| [m/s] 0.00 .. 2.83",
          {{"volume", Cold, 0.0303}, {"volume", Warm, 0.0799}, {"scatterMatrix", Orange, 0}}},
+        {"lic", "data layers slices timeline transfer volume", "O2 [mol/m³] 0.02 .. 6.22; T [K] 353.17 .. 356.60", {}},
         {"overTime",
          "data layers profile profile-2 slices timeline transfer volume",
          "H2 [mol/m³] 24.48 .. 33.11",
@@ -119,10 +122,15 @@ const std::vector<Shipped>& shipped() {
          "data history layers log parallelCoordinates slices timeline transfer volume",
          kTemperature,
          {{"parallelCoordinates", Orange, 0.0136}}},
+        {"pieces", "data layers pieces slices timeline transfer volume", "gas 0.00 .. 1.00", {{"volume", Green, 0.01}}},
         {"shadowCube",
          "data layers shadowCube slices timeline transfer",
          kTemperature,
          {{"shadowCube", Warm, 0.0788}, {"shadowCube", Green, 0.0311}}},
+        {"speedlines",
+         "data layers slices timeline transfer volume",
+         "O2 [mol/m³] 0.02 .. 6.22; H2 [mol/m³] 24.37 .. 29.51; T [K] 353.17 .. 356.60",
+         {}},
         {"starved",
          "data history layers log scatterMatrix slices timeline transfer volume",
          kTemperature,
@@ -140,6 +148,10 @@ const std::vector<Shipped>& shipped() {
           {"tesseract", Cold, 0.0945},
           {"tesseract", Warm, 0.0615},
           {"volume", Green, 0.149}}},
+        {"timelines",
+         "data layers slices timeline transfer volume",
+         "O2 [mol/m³] 0.02 .. 6.22; H2 [mol/m³] 24.37 .. 29.51; T [K] 353.17 .. 356.60",
+         {}},
         {"worlds",
          "data hierarchy history layers log statistics timeline transfer volume",
          kTemperature,
@@ -184,6 +196,8 @@ protected:
         std::map<std::string, double>& settings = request.data->settings;
         if (request.data->model == "marschner-lobb")
             settings["nx"] = settings["ny"] = settings["nz"] = 24;
+        else if (request.data->model == "branching-pulse")
+            settings = {{"nx", 36}, {"ny", 22}, {"nz", 11}, {"times", 20}};
         else
             settings = {{"nx", 7}, {"ny", 13}, {"nz", 40}};
         opened = open(request);
@@ -251,6 +265,7 @@ TEST_P(Layouts, AreDrawnWithoutOpenGl) {
     if (name == "parallel") panes.push_back("parallelCoordinates");
     if (name == "worlds") panes.push_back("hierarchy");
     if (name == "worthSeeing") panes.push_back("worthSeeing");
+    if (name == "pieces") panes.push_back("pieces");
     PictureMaker without({.openGl = false});
     for (const std::string& pane : panes) {
         if (!session().views.contains(pane)) continue;

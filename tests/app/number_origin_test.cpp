@@ -1,10 +1,12 @@
 #include "app/data/number_origin.h"
 
+#include "app/edits/error_band.h"
 #include "app/pages/plot_page.h"
 #include "app/queries/focus_share.h"
 #include "codec/container/metadata.h"
 #include "volume/field/mesh_origin.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 
 namespace tessera::app {
@@ -97,6 +99,68 @@ TEST(NumberOrigin, TellsDerivedParametersAndOriginalsFromWhatIsRead) {
               "resampled to BCC, stored with an error at most 0.4 K; originals as computed");
     origin.alongTime = true;
     EXPECT_EQ(originText(origin, info, channel(info, "T as computed")), "as computed, interpolated along time");
+}
+
+TEST(NumberOrigin, SaysWhatKindOfBoundIsKnown) {
+    volume::DatasetInfo info = fourParameters();
+    const auto of = [&](const NumberOrigin& origin, const char* name) {
+        return packingBound(origin, info, info.channel(channel(info, name)[0]));
+    };
+    EXPECT_EQ(of(computedOrigin(info), "T"), PackingBound{}) << "exact";
+    EXPECT_EQ(of(storedOn(volume::LatticeKind::CC, 0), "T"), PackingBound{});
+    const NumberOrigin cc = storedOn(volume::LatticeKind::CC, 0.01);
+    ASSERT_TRUE(of(cc, "T"));
+    EXPECT_NEAR(of(cc, "T")->most, 0.4, 1e-12);
+    EXPECT_EQ(boundKind(*of(cc, "T")), "bound of the archive");
+    EXPECT_FALSE(of(cc, "region")) << "labels have none";
+    EXPECT_FALSE(of(storedOn(volume::LatticeKind::BCC, 0), "T")) << "what resampling has changed is not known";
+    EXPECT_EQ(boundKind(*of(storedOn(volume::LatticeKind::BCC, 0.01), "T")),
+              "bound of the archive, without resampling");
+    NumberOrigin other = cc;
+    other.discarded = true;
+    EXPECT_FALSE(of(other, "T")) << "bricks are left out";
+    other = storedOn(volume::LatticeKind::BCC, 0.01);
+    other.resampleErrors = {1.5, 2, 3, 0};
+    EXPECT_EQ(of(other, "T"), (PackingBound{1.5, true, false}));
+    EXPECT_EQ(boundKind(*of(other, "T")), "largest error measured when packed");
+    // The derived parameter has it, one of a derived one has none.
+    const std::vector<volume::DerivedParameter> wanted = {{"u", "K", volume::UncertaintyRecipe{"T"}},
+                                                          {"v", "K", volume::UncertaintyRecipe{"none"}}};
+    const auto made = withBounds(wanted, cc, info);
+    EXPECT_NEAR(std::get<volume::UncertaintyRecipe>(made[0].recipe).bound.value_or(0), 0.4, 1e-12);
+    EXPECT_FALSE(std::get<volume::UncertaintyRecipe>(made[1].recipe).bound);
+    info.parameters.push_back(info.parameters[0]);
+    info.parameters.back().name = "T - 300";
+    EXPECT_FALSE(of(cc, "T - 300"));
+}
+
+TEST(ErrorBand, LiesOnBothSidesOfASurfaceAndFollowsIt) {
+    Session session;
+    session.layers = {{"T", true, vis::IsoLayer{.channel = "T", .value = 320}},
+                      {"other", true, vis::VolumeLayer{.channel = "p"}}};
+    const auto values = [&] {
+        std::vector<double> out;
+        for (const vis::Layer& layer : session.layers)
+            if (const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique)) out.push_back(surface->value);
+        std::ranges::sort(out);
+        return out;
+    };
+    showErrorBand(session, 1, 0.5);
+    showErrorBand(session, 0, 0);
+    showErrorBand(session, 7, 0.5);
+    EXPECT_EQ(session.layers.size(), 2u) << "no surface, no bound, no layer";
+    showErrorBand(session, 0, 0.5);
+    EXPECT_EQ(values(), (std::vector<double>{319.5, 320, 320.5}));
+    EXPECT_EQ(std::get<vis::IsoLayer>(session.layers[0].technique).opacity, 1) << "the surface stays as it is";
+    for (const std::size_t band : {std::size_t(1), std::size_t(2)}) {
+        EXPECT_LT(std::get<vis::IsoLayer>(session.layers[band].technique).opacity, 0.5f);
+        EXPECT_TRUE(isOfErrorBand(session.layers[band]));
+        showErrorBand(session, band, 0.5); // none around one of these
+    }
+    std::get<vis::IsoLayer>(session.layers[0].technique).value = 330;
+    showErrorBand(session, 0, 2);
+    EXPECT_EQ(values(), (std::vector<double>{328, 330, 332})) << "those that are there follow";
+    EXPECT_EQ(session.layers.size(), 4u);
 }
 
 TEST(NumberOrigin, StandsInVectorGraphics) {

@@ -469,5 +469,87 @@ TEST(Numbers, OneGridOfAnArchiveInSpaceAndTimeIsReadAsStored) {
     std::filesystem::remove_all(folder);
 }
 
+TEST(Numbers, OneGridOfABodyCentredArchiveIsReadAsStored) {
+    const std::string folder =
+        (std::filesystem::temp_directory_path() / "tessera_one_of_bcc_").string() + std::to_string(::getpid());
+    std::filesystem::create_directories(folder);
+    const std::string path = folder + "/bcc.tsr";
+    // An odd number of slices: the first grid has one more.
+    codec::pack(volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 24}}), packing(StoredLattice::BCC), path);
+    const codec::Archive archive(path);
+    const volume::Lattice& both = archive.info().lattice;
+    DataRef data = dataOf({path}, {});
+    std::size_t samples = 0;
+    for (const ShownGrids grids : {ShownGrids::First, ShownGrids::Second}) {
+        data.grids = grids;
+        const int sublattice = grids == ShownGrids::First ? 0 : 1;
+        const Sources one = opened(data);
+        const volume::DatasetInfo& info = one.numbers->info();
+        EXPECT_EQ(one.origin.lattice, "one grid of BCC");
+        EXPECT_EQ(info.lattice.kind, volume::LatticeKind::CC);
+        EXPECT_EQ(one.pictures->info().lattice, info.lattice) << "drawn as stored";
+        samples += info.lattice.count();
+        const int channel = info.findChannel("T").value();
+        for (int level = 0; level < one.numbers->grid().levels; ++level)
+            for (std::size_t n = 0; n < one.numbers->grid().brickCount(); ++n) {
+                const volume::BrickKey key{channel, 0, level, one.numbers->grid().indexOf(n)};
+                const volume::BrickSamples own = one.numbers->read(key), all = archive.read(key);
+                ASSERT_EQ(own.size, one.numbers->grid().brickSamples(key.index, level));
+                const glm::ivec3 size = own.size;
+                for (int z = 0; z < size.z; ++z)
+                    for (int at = 0; at < size.x * size.y; ++at) {
+                        const auto from = std::size_t((2 * z + sublattice) * size.x * size.y + at),
+                                   to = std::size_t(z * size.x * size.y + at);
+                        ASSERT_EQ(own.isPresent(to), all.isPresent(from));
+                        ASSERT_EQ(own.values[to], all.values[from]);
+                    }
+            }
+        for (const glm::ivec3 at : {glm::ivec3(0), info.lattice.size - 1})
+            EXPECT_LT(glm::length(info.lattice.position(at) - both.position({at.x, at.y, 2 * at.z + sublattice})),
+                      1e-12)
+                << "they lie where they did";
+    }
+    EXPECT_EQ(samples, both.count()) << "each sample is in one of them";
+    std::filesystem::remove_all(folder);
+}
+
+TEST(Numbers, TheUncertaintyOfAnArchiveBoundsWhatPackingChanged) {
+    const std::string folder =
+        (std::filesystem::temp_directory_path() / "tessera_uncertainty_").string() + std::to_string(::getpid());
+    std::filesystem::create_directories(folder);
+    const std::string path = folder + "/bounded.tsr";
+    const volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 24}});
+    const auto computed = volume::makeMemorySource(cell, {.lattice = volume::LatticeKind::CC, .budget = 1 << 28});
+    for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
+        codec::pack(cell, packing(lattice, 0.01), path);
+        DataRef data = dataOf({path}, {});
+        data.derived = {{"u", "K", volume::UncertaintyRecipe{"T"}}};
+        const Sources sources = opened(data);
+        const volume::DatasetInfo& info = sources.numbers->info();
+        const int t = info.findChannel("T").value(), u = info.findChannel("u").value();
+        const auto bound = packingBound(sources.origin, info, info.channel(t));
+        ASSERT_TRUE(bound && bound->most > 0);
+        EXPECT_EQ(bound->measured, lattice == StoredLattice::BCC) << "its corrections lead back to the source";
+        double worst = 0;
+        const glm::ivec3 size = cell.info.lattice.size;
+        for (int z = 0; z < size.z; ++z)
+            for (int y = 0; y < size.y; ++y)
+                for (int x = 0; x < size.x; x += 2) {
+                    const glm::dvec3 at = cell.info.lattice.position({x, y, z});
+                    const auto was = volume::probeChannel(*computed, computed->info().findChannel("T").value(), at, 0);
+                    const auto is = volume::probeChannel(*sources.numbers, t, at, 0);
+                    const auto stated = volume::probeChannel(*sources.numbers, u, at, 0);
+                    ASSERT_EQ(was.nearest.has_value(), is.nearest.has_value());
+                    ASSERT_EQ(stated.nearest.has_value(), is.nearest.has_value());
+                    if (!is.nearest) continue;
+                    EXPECT_EQ(*stated.nearest, double(float(bound->most)));
+                    worst = std::max(worst, std::abs(*was.nearest - *is.nearest));
+                }
+        EXPECT_GT(worst, 0) << "something was lost";
+        EXPECT_LE(worst, bound->most * (1 + 1e-6));
+    }
+    std::filesystem::remove_all(folder);
+}
+
 } // namespace
 } // namespace tessera::app

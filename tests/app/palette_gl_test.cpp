@@ -166,6 +166,16 @@ TEST_F(Palette, ALensOfAnotherParameterAndSeedsInTheSelectionAreOneStepEach) {
     EXPECT_TRUE(workbench.session() == flow);
 }
 
+TEST_F(Palette, AddsWhatItNames) {
+    const std::size_t before = workbench.session().layers.size();
+    ASSERT_TRUE(run("Add slice with strokes"));
+    settle();
+    ASSERT_EQ(workbench.session().layers.size(), before + 1);
+    const auto* slice = std::get_if<vis::SliceLayer>(&workbench.session().layers.back().technique);
+    ASSERT_TRUE(slice);
+    EXPECT_EQ(slice->strokes.vector, "U");
+}
+
 TEST_F(Palette, ADerivedParameterIsAddedAndItsPanelShown) {
     ASSERT_TRUE(run("Add derived parameter: vorticity"));
     settle();

@@ -1,5 +1,6 @@
 #include "app/views/parallel/parallel_page.h"
 #include "app/views/parallel/parallel_query.h"
+#include "app/views/parallel/sample_line.h"
 #include "app/views/scatter3d/cloud_table.h"
 #include "tests/app/fed_imgui.h"
 #include "tests/app/formula_cell.h"
@@ -231,6 +232,47 @@ TEST(AxisShare, AndValueAreInverse) {
         EXPECT_NEAR(volume::axisValue(axis, 0.5), logarithmic ? std::sqrt(1000.0) : 251, 1e-9);
     }
     EXPECT_LT(volume::axisShare({0, {1, 2}, true}, -3), -1e300);
+}
+
+TEST_F(Densities, TheSampleUnderTheMouseIsThatWhoseLineRunsNearest) {
+    const std::vector<std::string> names = {"T", "c", "|U|"};
+    SampleQuery query{.axes = {axis("T"), axis("c"), axis("|U|")}, .flipped = {false, true, false}, .time = {1, 1, 0}};
+    const auto height = [&](std::size_t a, Place at) -> std::optional<double> {
+        const auto value = formula::valueAt(names[a], at, formula::kTimes[1]);
+        if (!value) return std::nullopt;
+        const Range range = formula::rangeOf(names[a]);
+        const double share = (double(*value) - range.lo) / (range.hi - range.lo);
+        return query.flipped[a] ? 1 - share : share;
+    };
+    std::size_t absent = 0;
+    for (const int left : {0, 1, 2})
+        for (const double along : {0.0, 0.3, 0.9})
+            for (const double at : {0.1, 0.45, 0.8}) {
+                query.left = left, query.along = along, query.height = at;
+                const auto found = nearestSample(*source, query, 0);
+                ASSERT_TRUE(found);
+                const bool between = along > 0 && left < 2;
+                double nearest = 1e9;
+                formula::forEachPlace([&](Place place) {
+                    const auto a = height(std::size_t(left), place);
+                    const auto b = between ? height(std::size_t(left) + 1, place) : a;
+                    if (a && b) nearest = std::min(nearest, std::abs(std::lerp(*a, *b, along) - at));
+                });
+                EXPECT_NEAR(found->away, nearest, 1e-5) << left << " " << along << " " << at;
+                // It lies where its values say.
+                const glm::ivec3 index = source->info().lattice.nearest(found->position);
+                const Place place{index.x, index.y, index.z};
+                ASSERT_EQ(found->values.size(), names.size());
+                for (std::size_t a = 0; a < names.size(); ++a) {
+                    const auto value = formula::valueAt(names[a], place, formula::kTimes[1]);
+                    ASSERT_EQ(found->values[a].has_value(), value.has_value());
+                    if (value) {
+                        EXPECT_NEAR(*found->values[a], double(*value), 1e-5 * (1 + std::abs(double(*value))));
+                    }
+                    absent += value ? 0 : 1;
+                }
+            }
+    EXPECT_GT(absent, 0u) << "some lack c";
 }
 
 } // namespace

@@ -3,8 +3,9 @@
 #include "app/tools/profile_line.h"
 #include "app/views/curves/profile_data.h"
 #include "app/views/shadow_cube/wall_projection.h"
+#include "app/views/tesseract/tesseract_turn.h"
 #include "codec/pack/pack.h"
-#include "vis/shapes/rotation4.h"
+#include "vis/shapes/projection4.h"
 #include "volume/base/error.h"
 #include "volume/bricks/sample_position.h"
 #include "volume/reconstruct/probe.h"
@@ -374,30 +375,23 @@ TEST(Scenarios, TheTesseractTurnsAndTurnsBack) {
     const Recorded task = recorded("tesseract");
     const auto angles = [](const Session& session) {
         for (const auto& [pane, view] : session.views)
-            if (const auto* tesseract = std::get_if<TesseractView>(&view))
-                return vis::Angles4{tesseract->turn.x,  tesseract->turn.y,  tesseract->turn.z,
-                                    tesseract->turn4.x, tesseract->turn4.y, tesseract->turn4.z};
-        return vis::Angles4{};
+            if (const auto* tesseract = std::get_if<TesseractView>(&view)) return anglesOf(*tesseract, 4);
+        return std::vector<double>(6);
     };
-    vis::Angles4 farthest{};
+    std::vector<double> farthest(6);
     for (const Session& step : task.steps) {
-        const vis::Angles4 now = angles(step), start = angles(task.steps.front());
+        const std::vector<double> now = angles(step), start = angles(task.steps.front());
         for (std::size_t i = 0; i < 6; ++i) farthest[i] = std::max(farthest[i], std::abs(now[i] - start[i]));
-        const glm::dmat4 rotation = vis::rotationOf(now);
-        const glm::dmat4 product = rotation * glm::transpose(rotation);
-        for (int c = 0; c < 4; ++c)
-            for (int r = 0; r < 4; ++r) EXPECT_NEAR(product[c][r], c == r ? 1 : 0, 1e-12);
-        for (int corner = 0; corner < vis::kCorners4; ++corner) {
-            const vis::Projected4 seen = vis::project({}, 2, rotation * vis::corner4(corner, glm::dvec4(1)));
-            EXPECT_LE(glm::length(seen.at), 1.0 + 1e-9) << "no blow-up at any angle";
+        const vis::RotationN rotation = vis::rotationOf(now);
+        const vis::RotationN product = rotation * rotation.inverse();
+        for (int i = 0; i < 64; ++i) EXPECT_NEAR(product.at(i / 8, i % 8), i / 8 == i % 8 ? 1 : 0, 1e-12);
+        for (int corner = 0; corner < 16; ++corner) {
+            const vis::PointN at = rotation * vis::cornerOf(corner, {1, 1, 1, 1}, 4);
+            EXPECT_LE(glm::length(vis::project({}, 2, vis::firstFour(at)).at), 1.0 + 1e-9) << "no blow-up at any angle";
         }
     }
-    for (std::size_t i = 0; i < 6; ++i) EXPECT_GT(farthest[i], 1) << vis::kPlane4Names[i];
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_GT(farthest[i], 1) << "plane " << i;
     EXPECT_EQ(angles(task.last()), angles(task.steps.front()));
-    const glm::dmat4 back =
-        vis::rotationOf(angles(task.last())) * glm::transpose(vis::rotationOf(angles(task.steps.front())));
-    for (int c = 0; c < 4; ++c)
-        for (int r = 0; r < 4; ++r) EXPECT_NEAR(back[c][r], c == r ? 1 : 0, 1e-12);
 }
 
 } // namespace

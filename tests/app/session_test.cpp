@@ -172,6 +172,22 @@ TEST_F(SessionFileTest, BrushesOfEarlierSessionsLeaveTheirPicturesAsTheyWere) {
     EXPECT_EQ(least(R"({"schema": 4})"), vis::Selection().focusOpacity) << "brushes to come";
 }
 
+TEST_F(SessionFileTest, PathsOfEarlierVersionsKeepTheirSpeed) {
+    const auto layer = [](const std::string& schema, const std::string& kind) {
+        const Session session =
+            parseSession(R"({"schema": )" + schema +
+                             R"(, "layers": [{"technique": {"type": "flow", "vector": "U", "channel": "T", "kind": ")" +
+                             kind + R"(", "speed": 1000}}]})",
+                         "x")
+                .session;
+        return std::get<vis::FlowLayer>(session.layers.at(0).technique);
+    };
+    EXPECT_TRUE(layer("5", "pathlines").ignoreUnits) << "1 length per time, times the speed";
+    EXPECT_EQ(layer("5", "pathlines").speed, 1000);
+    EXPECT_FALSE(layer("6", "pathlines").ignoreUnits);
+    EXPECT_FALSE(layer("5", "tubes").ignoreUnits);
+}
+
 TEST_F(SessionFileTest, LayersOfALensThatIsMissingAreHidden) {
     volume::DatasetInfo info;
     info.bounds = {glm::dvec3(0), glm::dvec3(1)};

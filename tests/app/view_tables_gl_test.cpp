@@ -1,3 +1,4 @@
+#include "app/views/slices/slice_matrix.h"
 #include "tests/app/formula_view.h"
 #include "tests/app/table_text.h"
 
@@ -336,6 +337,74 @@ TEST_F(ViewTables, PlanesAreReadWhereTheyStand) {
             EXPECT_NEAR(*table.number(row, "T [K]"), between("T", at, of.time), 3e-4) << row;
         }
     }
+}
+
+TEST_F(ViewTables, SlicesOfSeveralTimesAreReadAtEachOfThem) {
+    SliceMatrixView view;
+    view.channels = {"T"};
+    view.columns = MatrixAxis::Times;
+    view.times = 2; // the first and the last of three
+    install(view);
+    const TableText table = shownAt({0.5, {}});
+    std::set<double> times;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        const double time = *table.number(row, "time [s]");
+        times.insert(time);
+        const glm::dvec3 at = placeIn(table, row);
+        EXPECT_NEAR(at.z, start.cursor.z, 1e-11) << "through the cross-hair";
+        if (row % 53 == 0) {
+            EXPECT_NEAR(*table.number(row, "T [K]"), between("T", at, time), 3e-4) << row;
+        }
+    }
+    EXPECT_EQ(times, (std::set<double>{formula::kTimes[0], formula::kTimes[2]}));
+}
+
+TEST_F(ViewTables, ASliceMatrixDiffersInWhatIsChosen) {
+    install(SliceMatrixView{});
+    const Session session = start;
+    const volume::DatasetInfo& info = workbench.document().info();
+    const std::vector<int> channels{*info.findChannel("T"), *info.findChannel("c")};
+    const auto of = [&](MatrixAxis rows, MatrixAxis columns) {
+        SliceMatrixView view;
+        view.rows = rows, view.columns = columns, view.planes = 5, view.times = 24;
+        return sliceMatrix(session, info, view, channels);
+    };
+    const std::map<MatrixAxis, int> counts{
+        {MatrixAxis::Parameters, 2}, {MatrixAxis::Directions, 3}, {MatrixAxis::Positions, 5}, {MatrixAxis::Times, 3}};
+    for (const auto& [rows, high] : counts)
+        for (const auto& [columns, wide] : counts) {
+            const SliceMatrix matrix = of(rows, columns);
+            ASSERT_EQ(matrix.rows, rows == columns ? 1 : high);
+            ASSERT_EQ(matrix.columns, wide);
+            ASSERT_EQ(matrix.pictures.size(), std::size_t(matrix.rows * matrix.columns));
+            EXPECT_EQ(matrix.rowNames.size(), std::size_t(matrix.rows));
+            EXPECT_EQ(std::set<std::string>(matrix.columnNames.begin(), matrix.columnNames.end()).size(),
+                      std::size_t(wide))
+                << "each column is called differently";
+        }
+    const SliceMatrix matrix = of(MatrixAxis::Directions, MatrixAxis::Times);
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) {
+            const PlanePicture& slice = matrix.at(row, column);
+            EXPECT_EQ(slice.axes->normal, row);
+            EXPECT_EQ(slice.ownTime, formula::kTimes[column]);
+            EXPECT_NEAR(slice.placeAt({0, 0})[row], session.cursor[row], 1e-12);
+            EXPECT_EQ(slice.shows.channel, channels[0]);
+        }
+    // "c" is missing in the east, and at no plane of T.
+    const volume::BrickSource& source = *workbench.source();
+    SliceMatrixView across;
+    across.axis = volume::SpaceAxis::X;
+    across.planes = 8;
+    const SliceMatrix planes = sliceMatrix(session, info, across, channels);
+    int empty = 0;
+    for (int column = 0; column < across.planes; ++column) {
+        EXPECT_TRUE(showsValues(source, planes.at(0, column)));
+        empty += showsValues(source, planes.at(1, column)) ? 0 : 1;
+    }
+    EXPECT_TRUE(empty >= 2 && empty <= 6) << empty;
+    EXPECT_TRUE(showsValues(source, planes.at(1, 0))) << "the west has it";
+    EXPECT_FALSE(showsValues(source, planes.at(1, across.planes - 1)));
 }
 
 TEST_F(ViewTables, ThreeSlicesAreReadAtTheCrossHair) {

@@ -14,15 +14,11 @@ namespace tessera::app {
 
 /// Draws until every job is done and nothing refines. Fails where that takes minutes, and says what is not done.
 inline void settle(Workbench& workbench, OffscreenFrames& frames) {
-    const auto begin = std::chrono::steady_clock::now(), end = begin + std::chrono::minutes(2);
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
     do {
         workbench.jobs().wait();
         frames.draw(workbench, 1);
-        const auto now = std::chrono::steady_clock::now();
-        // A picture that was not finished before a text field was taken is refined when that is left.
-        if (ImGui::IsAnyItemActive() && workbench.jobs().list().empty() && now > begin + std::chrono::seconds(10))
-            break;
-        if (now < end) continue;
+        if (std::chrono::steady_clock::now() < end) continue;
         std::string left;
         for (const Jobs::Status& job : workbench.jobs().list()) left += " job " + job.title;
         if (workbench.panes().busy())

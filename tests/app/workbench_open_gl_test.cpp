@@ -128,6 +128,17 @@ TEST_F(WorkbenchOpening, QuestionsForFilesBeginWhereTheDataLie) {
     EXPECT_EQ(fs::path(workbench.files().folder()), fs::canonical(folder));
 }
 
+// Else the program would draw frame after frame until the field is left, and never show the picture whole.
+TEST_F(WorkbenchOpening, APictureIsFinishedWhileAFieldOfTextIsHeld) {
+    workbench.install(smallData());
+    ASSERT_TRUE(run("Open..."));
+    for (int i = 0; i < 3; ++i) frame();
+    ASSERT_TRUE(typing());
+    settle();
+    EXPECT_TRUE(typing());
+    EXPECT_FALSE(workbench.busy());
+}
+
 // What cannot be opened is not opened, and nobody is asked to give up a session for it.
 TEST_F(WorkbenchOpening, AFileThatFailedItsPreviewIsNotOpened) {
     workbench.install(smallData());

@@ -131,8 +131,8 @@ TEST_F(Drawn, TheCellOfNowLiesAtItsShareOfTheFourthAxis) {
         EXPECT_EQ(read[0].text, "t = 3 s");
         float left = 1e9f, right = -1e9f;
         for (int corner = 0; corner < 8; ++corner) {
-            glm::dvec4 at = vis::corner4(corner, frame.half);
-            at.w = frame.half.w * (2 * share - 1);
+            vis::PointN at = vis::cornerOf(corner, frame.half, 3);
+            at[3] = frame.half[3] * (2 * share - 1);
             const float x = frame.pixel(frame.project(at).at).x;
             left = std::min(left, x), right = std::max(right, x);
         }

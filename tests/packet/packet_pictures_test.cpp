@@ -132,6 +132,14 @@ const Mode kModes[] = {
                       .inverted = true,
                       .strength = 0.5f}};
      }},
+    {"a lens of what is brushed",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3}),
+                     layerOf(VolumeLayer{.channel = "whole", .shaded = false, .density = 0.5f})};
+         s.layers[1].lens = "brushed";
+         s.selection.brushes = {rangeBrush({{.channel = "a", .lo = 290, .hi = 320, .soft = 8}})};
+         s.lenses = {{.name = "brushed", .shape = LensShape::Selection}};
+     }},
     {"brushes and lenses",
      [](Scene& s) {
          s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3})};

@@ -1,4 +1,5 @@
 #include "tests/packet/packet_pictures.h"
+#include "tests/reference/some_strokes.h"
 
 /// Slices by the packet ray caster, alone and among other layers, against the double-precision reference.
 namespace tessera::vis::packet {
@@ -20,6 +21,17 @@ const Mode kSliceModes[] = {
                                         .normal = {0.2f, 0.4f, 0.9f},
                                         .contours = 4,
                                         .opacity = 0.9f})};
+         s.cursor = {9, 8, 12};
+     }},
+    {"strokes",
+     [](Scene& s) {
+         s.layers = {layerOf(SliceLayer{.channel = "a", .orientation = SliceOrientation::X, .contours = 2}),
+                     layerOf(SliceLayer{.channel = "b", .orientation = SliceOrientation::Z, .opacity = 0.7f}),
+                     layerOf(SliceLayer{.channel = "b", .orientation = SliceOrientation::Y})};
+         std::get<SliceLayer>(s.layers[0].technique).strokes.strength = 0.8f;
+         std::get<SliceLayer>(s.layers[1].technique).strokes.grey = true;
+         s.strokes = {{0, reference::someStrokes({0, 1, 0}, {0, 0, 1})},
+                      {1, reference::someStrokes({0.6, 0.8, 0}, {-0.8, 0.6, 0})}};
          s.cursor = {9, 8, 12};
      }},
     {"slices in a haze",

@@ -88,6 +88,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
             one.integrals = integralFunctions(*one.function, one.range);
         if (const auto* slice = std::get_if<SliceLayer>(one.technique))
             one.plane = slicePlane(*slice, frame, scene.cursor);
+        one.strokes = strokesOf(scene, int(&layer - scene.layers.data()));
         layers.push_back(std::move(one));
     }
     for (const std::string& channel : interestOf.channels()) brushed.push_back(load(channel));
@@ -167,7 +168,7 @@ struct MediumScene {
     }
     glm::dvec4 after(const DrawnLayer& layer, glm::dvec3 color, double opacity, glm::dvec3 world) const {
         const Interest doi = scene.interest(world);
-        const LensAction lens = scene.lensAction(layer, world);
+        const LensAction lens = scene.lensAction(layer, world, doi.doi);
         return {scene.focused(layer, scene.tinted(layer, color, world), doi, lens.saturation),
                 opacity * scene.opacityFactor(layer, doi) * lens.opacity};
     }

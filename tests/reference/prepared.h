@@ -25,6 +25,7 @@ struct DrawnLayer {
     BrushEffect brushes = BrushEffect::Fade;
     int lens = -1; ///< index into Prepared::lenses of the lens that it is drawn in, -1: everywhere
     Plane plane;   ///< of a slice
+    const StrokePicture* strokes = nullptr;     ///< of a slice
     std::optional<IntegralFunctions> integrals; ///< for pre-integrated layers
     const Samples* colors = nullptr;            ///< the channel that colours it; null: its own
     Range colorRange;
@@ -126,8 +127,8 @@ struct Prepared {
     glm::dvec3 gradient(const Samples& of, glm::dvec3 world) const {
         return gradient(of, world, of.part(cells(world)));
     }
-    LensAction lensAction(const DrawnLayer& layer, glm::dvec3 world) const {
-        return vis::lensAction(lenses, layer.lens, world);
+    LensAction lensAction(const DrawnLayer& layer, glm::dvec3 world, double doi) const {
+        return vis::lensAction(lenses, layer.lens, world, doi);
     }
     /// Opacity factor of a layer from its degree of interest and lenses.
     double opacityFactor(const DrawnLayer& layer, const Interest& doi) const {

@@ -12,8 +12,8 @@ void Projected::add(const Prepared& scene, const DrawnLayer& layer, std::optiona
         sums_.add(volume.style, threshold, false, 0, 0, 0);
         return;
     }
-    const LensAction lens = scene.lensAction(layer, place);
     const Interest doi = scene.interest(place);
+    const LensAction lens = scene.lensAction(layer, place, doi.doi);
     const double factor = scene.opacityFactor(layer, doi) * lens.opacity;
     const double along =
         volume.quantity == Quantity::Gradient ? scene.steepPlace(layer, place) : layer.unclamped(found->value);

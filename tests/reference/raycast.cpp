@@ -54,10 +54,25 @@ template <class Number> struct Caster {
         double opacity, interest;
     };
 
-    /// The colour of a slice, with contour lines, where it has a value.
-    glm::dvec3 sliceColor(const DrawnLayer& layer, const Reading& own) const {
+    /// The colour of a slice, with strokes, where it has a value.
+    glm::dvec3 strokedColor(const DrawnLayer& layer, const Reading& own, glm::dvec3 place) const {
+        const glm::dvec3 color(layer.classify(own.value));
+        if (layer.strokes == nullptr) return color;
+        const Strokes& strokes = std::get<SliceLayer>(*layer.technique).strokes;
+        return withStrokes<double>(strokes.grey ? glm::dvec3(kStrokeGrey) : color, strokesAt(*layer.strokes, place).x,
+                                   double(strokes.strength));
+    }
+
+    /// Whether a slice of strokes alone has none at a place.
+    bool lacksStrokes(const DrawnLayer& layer, glm::dvec3 place) const {
+        return layer.strokes != nullptr && std::get<SliceLayer>(*layer.technique).strokes.grey &&
+               strokesAt(*layer.strokes, place).y < 0.5;
+    }
+
+    /// The same with contour lines.
+    glm::dvec3 sliceColor(const DrawnLayer& layer, const Reading& own, glm::dvec3 at) const {
         const double value = own.value;
-        const glm::dvec3 color(layer.classify(value));
+        const glm::dvec3 color = strokedColor(layer, own, at);
         const int contours = std::get<SliceLayer>(*layer.technique).contours;
         if (contours <= 0) return color;
         const auto level = [&](double of) { return layer.unclamped(of) * (contours + 1); };
@@ -81,10 +96,11 @@ template <class Number> struct Caster {
             if (!(t > from && t <= to) || !shows(inSamples(double(t)))) continue;
             const glm::dvec3 place = glm::clamp(glm::dvec3(at(t)), -scene.frame.halfSize, scene.frame.halfSize);
             const std::optional<Reading> found = layer.samples->read(scene.cells(place));
-            if (!found) continue;
+            if (!found || lacksStrokes(layer, glm::dvec3(at(t)))) continue;
             const Interest doi = scene.interest(place);
-            const LensAction lens = scene.lensAction(layer, glm::dvec3(at(t)));
-            events.push_back({t, scene.focused(layer, sliceColor(layer, *found), doi, lens.saturation),
+            const LensAction lens = scene.lensAction(layer, glm::dvec3(at(t)), doi.doi);
+            events.push_back({t,
+                              scene.focused(layer, sliceColor(layer, *found, glm::dvec3(at(t))), doi, lens.saturation),
                               std::min(double(std::get<SliceLayer>(*layer.technique).opacity) *
                                            scene.opacityFactor(layer, doi) * lens.opacity,
                                        1.0),
@@ -177,7 +193,7 @@ template <class Number> struct Caster {
         const glm::dvec3 place(at((lo + hi) / 2));
         if (layer.samples->part(scene.cells(place)) != now->part || !shows(inSamples(double(lo + hi) / 2))) return;
         const Interest doi = scene.interest(place);
-        const LensAction lens = scene.lensAction(layer, place);
+        const LensAction lens = scene.lensAction(layer, place, doi.doi);
         const glm::dvec3 plain = scene.tinted(layer, linearFromSrgb(glm::dvec3(iso.color)), place);
         const glm::dvec3 albedo = scene.focused(layer, plain, doi, lens.saturation);
         const double opacity = std::min(double(iso.opacity) * scene.opacityFactor(layer, doi) * lens.opacity, 1.0);
@@ -238,7 +254,7 @@ template <class Number> struct Caster {
         const Classified classified = classify(layer, t);
         const glm::dvec3 place(at(t));
         const Interest doi = scene.interest(place);
-        const LensAction lens = scene.lensAction(layer, place);
+        const LensAction lens = scene.lensAction(layer, place, doi.doi);
         const double opacity = classified.color.a * scene.opacityFactor(layer, doi) * lens.opacity;
         const double thickness = double(volume.density) * classified.share * coverage(holes, k) * count;
         if (opacity <= 0 || thickness <= 0) return;

@@ -142,6 +142,27 @@ const Mode kModes[] = {
          s.lenses[1].effect = LensEffect::Suppress;
          s.lenses[1].strength = 0.2f;
      }},
+    {"what is brushed",
+     [](Scene& s) {
+         s.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}},
+                     {"", true, IsoLayer{.channel = "a", .value = 320, .opacity = 0.6f}, "brushed"},
+                     {"", true, VolumeLayer{.channel = "b", .shaded = false}, "brushed"},
+                     {"", true, SliceLayer{.channel = "b", .orientation = SliceOrientation::Y, .opacity = 0.8f}}};
+         for (Layer& layer : s.layers) layer.brushes = BrushEffect::None;
+         s.selection.brushes = {rangeBrush({{"b", 0.3, 0.6, 0.3}})};
+         s.lenses = {lensAt("brushed", s.cursor, 0.3f), lensAt("rest", s.cursor, 0.2f)};
+         s.lenses[0].shape = s.lenses[1].shape = LensShape::Selection;
+         s.lenses[1].effect = LensEffect::Suppress;
+         s.lenses[1].inverted = true;
+     }},
+    {"projections of what is brushed",
+     [](Scene& s) {
+         s.layers = {{"", true, VolumeLayer{.channel = "a", .style = RayStyle::Maximum}},
+                     {"", true, VolumeLayer{.channel = "b", .style = RayStyle::Average}, "brushed"}};
+         s.selection.brushes = {rangeBrush({{"b", 0.3, 0.6, 0.3}})};
+         s.lenses = {lensAt("brushed", s.cursor, 0.3f)};
+         s.lenses[0].shape = LensShape::Selection;
+     }},
     {"shadows",
      [](Scene& s) {
          s.layers = {{"", true, VolumeLayer{.channel = "a", .density = 3}},

@@ -141,6 +141,47 @@ TEST(Lens, ActsOnWhatLiesBelow) {
     EXPECT_EQ(placeLenses(std::vector<Lens>(20), {}, {}, {}).size(), std::size_t(kMaxLenses));
 }
 
+TEST(Lens, OfASelectionWeighsByTheDegreeOfInterestAlone) {
+    Lens lens{.shape = LensShape::Selection};
+    const glm::dvec3 anywhere(0.3, -0.2, 0.1);
+    for (const bool inverted : {false, true}) {
+        lens.inverted = inverted;
+        const PlacedLens placed = place(lens);
+        for (const double doi : {0.0, 0.25, 1.0}) {
+            const double weight = inverted ? 1 - doi : doi;
+            EXPECT_EQ(placed.weight(anywhere, doi), weight);
+            EXPECT_EQ(placed.weight(lens.center, doi), weight) << "its centre says nothing";
+            EXPECT_NEAR(lensAction({placed}, -1, anywhere, doi).opacity, 1 - weight, 1e-12);
+            EXPECT_NEAR(lensAction({placed}, 0, anywhere, doi).opacity, weight, 1e-12);
+        }
+    }
+    lens.effect = LensEffect::Focus;
+    EXPECT_EQ(confine({place(lens)}, 0.25, anywhere), 0.25) << "brushes cannot be confined to themselves";
+    lens.effect = LensEffect::Magnify;
+    lens.inverted = false;
+    EXPECT_EQ(place(lens).bend(anywhere), anywhere);
+}
+
+TEST(Lens, ActsBetweenItsTimesAlone) {
+    Lens lens{.name = "brief"};
+    lens.fromTime = 0.5;
+    lens.untilTime = 2;
+    const auto acts = [&](double time) { return placeLenses({lens}, {}, {}, {}, time).size() == 1; };
+    for (const auto& [time, wanted] : {std::pair{0.0, false}, {0.5, true}, {1.0, true}, {2.0, true}, {2.1, false}}) {
+        EXPECT_EQ(acts(time), wanted) << time;
+        Scene scene;
+        scene.time = time;
+        scene.lenses = {lens};
+        EXPECT_EQ(placeLenses(scene, {}).size(), wanted ? 1u : 0u) << time;
+    }
+    lens.fromTime.reset();
+    EXPECT_TRUE(acts(-1e9) && acts(2) && !acts(3));
+    lens.fromTime = 1, lens.untilTime.reset();
+    EXPECT_TRUE(!acts(0.9) && acts(1e9));
+    lens.enabled = false;
+    EXPECT_FALSE(acts(5));
+}
+
 TEST(Lens, BrushesWhatLiesInIt) {
     WorldFrame frame;
     frame.scale = glm::dvec3(10);

@@ -1,3 +1,4 @@
+#include "tests/reference/some_strokes.h"
 #include "tests/vis/renderer_scenes.h"
 #include "vis/image/image_metrics.h"
 #include "vis/passes/point_cloud.h"
@@ -90,6 +91,14 @@ const AlikeScene kAlikeScenes[] = {
     {"no ground", [](Scene& s) { s.showBox = true, s.showGround = false; }},
     {"paper", [](Scene& s) { s.paper = Paper{.tooth = 1}; }},
     {"filmic tones", [](Scene& s) { s.tone = {.curve = ToneCurve::Filmic, .exposure = 1}; }},
+    {"shadows of depth", [](Scene& s) { s.depthMask = {.strength = 2, .width = 0.1f, .lighten = true}; }},
+    {"shadows of depth without ground",
+     [](Scene& s) { s.depthMask.strength = 3, s.showGround = false, s.tone.curve = ToneCurve::Reinhard; }},
+    {"strokes",
+     [](Scene& s) {
+         s.layers = {{"", true, SliceLayer{.channel = "v", .orientation = SliceOrientation::X}}};
+         s.strokes = {{0, reference::someStrokes({0, 1, 0}, {0, 0, 1})}};
+     }},
     {"parallel rays", [](Scene& s) { s.camera.projection = Projection::Orthographic, s.showBox = true; }},
     {"four rays per pixel", [](Scene& s) { s.render.samples = 4; }},
     {"depth of field", [](Scene& s) { s.camera.aperture = 0.05f; }},
@@ -98,6 +107,13 @@ const AlikeScene kAlikeScenes[] = {
      [](Scene& s) { s.lighting.model = LightModel::Physical, s.lighting.environment.kind = Environment::Sky; }},
     {"a mesh and lines",
      [](Scene& s) { s.geometry = {{.geometry = ballAndSpiral(true), .style = {.lineWidth = 3}, .channel = "v"}}; }},
+    {"halos of a mesh and lines",
+     [](Scene& s) {
+         s.geometry =
+             withHalos({{.geometry = ballAndSpiral(true), .style = {.lineWidth = 3, .halo = 5}, .channel = "v"}},
+                       {0.9f, 0.2f, 0.1f});
+         s.layers.resize(1);
+     }},
     {"a mesh without normals in a volume",
      [](Scene& s) {
          s.geometry = {{.geometry = ballAndSpiral(false), .style = {.color = {0.2f, 0.7f, 0.4f}, .opacity = 0.5f}}};

@@ -1,3 +1,4 @@
+#include "tests/reference/some_strokes.h"
 #include "tests/vis/raycast_compare.h"
 #include "vis/gl/driver.h"
 #include "volume/sources/memory_source.h"
@@ -161,6 +162,17 @@ const Mode kModes[] = {
                                  .opacity = 0.6f}},
                      {"", true, SliceLayer{.channel = "label", .atCursor = false, .position = 0.83}}};
      }},
+    {"strokes", On::TwoOfFour,
+     [](Scene& s) {
+         s.layers = {{"", true, SliceLayer{.channel = "a", .orientation = SliceOrientation::X, .contours = 2}},
+                     {"", true, SliceLayer{.channel = "b", .orientation = SliceOrientation::Z, .opacity = 0.7f}},
+                     {"", true, SliceLayer{.channel = "b", .orientation = SliceOrientation::Y}}};
+         std::get<SliceLayer>(s.layers[0].technique).strokes.strength = 0.8f;
+         std::get<SliceLayer>(s.layers[1].technique).strokes.grey = true;
+         s.strokes = {{0, reference::someStrokes({0, 1, 0}, {0, 0, 1})},
+                      {1, reference::someStrokes({0.6, 0.8, 0}, {-0.8, 0.6, 0})}};
+     },
+     kCornerOutliers},
     {"contour lines", On::Every,
      [](Scene& s) {
          s.layers = {{"", true, SliceLayer{.channel = "a", .orientation = SliceOrientation::X, .contours = 3}}};

@@ -53,6 +53,8 @@ TEST(TablesScene, WhatTablesAreMadeOfMakesThemAnew) {
              [](Scene& s) { s.render.filter = Filter::Tetrahedral; }, [](Scene& s) { s.lenses[0].enabled = false; },
              [](Scene& s) { s.lenses[0].effect = LensEffect::Focus; }, [](Scene& s) { s.lenses[0].name = "other"; }})
         EXPECT_TRUE(anew(scene, change));
+    // A lens that does not act at a time is as one that is off.
+    EXPECT_TRUE(anew(scene, [](Scene& s) { s.lenses[0].fromTime = s.time + 1; }));
     // Longer steps are in the tables where a scene has them.
     Scene adaptive = scene;
     adaptive.lenses.clear();

@@ -269,6 +269,23 @@ TEST(Derived, DeviationIsMeasuredOverTheTimes) {
     });
 }
 
+TEST(Derived, AnUncertaintyIsTheBoundWhereThereIsAValue) {
+    const auto below = functions(LatticeKind::BCC);
+    below->absent = [](glm::dvec3 p) { return p.x > 0; };
+    UncertaintyRecipe recipe{"f"};
+    for (const bool known : {true, false}) {
+        recipe.bound = known ? std::optional(0.25) : std::nullopt;
+        const auto source = derive(below, {"uncertainty f", "K", recipe});
+        const int channel = *source->info().findChannel("uncertainty f");
+        for (int level = 0; level < 3; ++level)
+            forSamples(*source, channel, 1, level, [&](glm::dvec3 p, std::optional<double> value) {
+                EXPECT_EQ(value.has_value(), known && !(p.x > 0));
+                EXPECT_EQ(value.value_or(0.25), 0.25);
+            });
+        EXPECT_EQ(source->info().parameters.back().ranges[0].hi, known ? 0.25 : 1) << "colours begin at exact";
+    }
+}
+
 TEST(Derived, SmoothingKeepsWhatIsLinearAndMixesOnlyWhatIsPresent) {
     for (const LatticeKind kind : kKinds) {
         const auto below = functions(kind);

@@ -1,6 +1,7 @@
 #include "volume/flow/flow.h"
 
 #include "tests/volume/fields.h"
+#include "volume/flow/paths.h"
 #include "volume/flow/seeds.h"
 #include "volume/sources/memory_source.h"
 

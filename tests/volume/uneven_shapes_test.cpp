@@ -1,6 +1,7 @@
 #include "tests/volume/uneven.h"
 #include "volume/flow/balance.h"
 #include "volume/flow/flow.h"
+#include "volume/flow/paths.h"
 #include "volume/mesh/isosurface.h"
 #include "volume/reconstruct/probe.h"
 #include "volume/resample/even_grid.h"
@@ -66,7 +67,7 @@ TEST(UnevenFlow, LinesOfAUniformFlowAreStraight) {
         const VectorGrid grid = readVector(*source, 1, 0, 0);
         const Box box = source->info().bounds;
         const glm::dvec3 seed(1.05e-3, 0.8e-3, 1.03e-3);
-        const StreamlineSettings settings{.lattice = lattice};
+        const PathSettings settings{.lattice = lattice};
         const Pathline line =
             pathline([&](glm::dvec3 p, double) { return grid.at(p); }, seed, 0, -1e300, 1e300, settings);
         ASSERT_GT(line.places.size(), 10u);

@@ -18,9 +18,9 @@ std::optional<Tile> changedPixels(const Scene& before, const Scene& after, const
     Scene otherwise = after;
     otherwise.lenses = before.lenses;
     if (!sliceAtCursor(after)) otherwise.cursor = before.cursor;
-    // Shadows, blur and lens brushes also change pixels outside a lens.
+    // Shadows, of depth too, blur and lens brushes also change pixels outside a lens.
     if (!(otherwise == before) || after.camera.aperture > 0 || after.lighting.shadows.any() || blursContext(after) ||
-        selectsLens(after.selection))
+        after.depthMask.any() || selectsLens(after.selection))
         return std::nullopt;
     const std::vector<PlacedLens> was = placeLenses(before, frame), is = placeLenses(after, frame);
     if (was.size() != is.size()) return std::nullopt;

@@ -130,6 +130,7 @@ void keepMostUrgent(BrickDemand& demand, double share) {
 
 /// Whether a box may intersect a lens.
 bool meets(const PlacedLens& lens, const WorldBox& box) {
+    if (lens.shape == LensShape::Selection) return false; // it asks for no detail of its own
     // Largest extent of the box along each unit-shape coordinate.
     glm::dvec3 reach(0);
     for (int axis = 0; axis < 3; ++axis) reach += glm::abs(glm::dvec3(lens.toUnit[axis])) * box.half[axis];

@@ -24,7 +24,7 @@ std::optional<std::vector<Tile>> lensTiles(const std::vector<PlacedLens>& lenses
     if (selectsLens(scene.selection)) return std::nullopt;
     std::vector<Tile> tiles;
     for (const PlacedLens& lens : lenses) {
-        const bool local = !lens.inverted && lens.outside == 1 && lens.focus == 0;
+        const bool local = lens.shape != LensShape::Selection && !lens.inverted && lens.outside == 1 && lens.focus == 0;
         const std::optional<Tile> tile = local ? lensPixels(lens, scene.camera, size) : std::nullopt;
         if (!tile) return std::nullopt;
         const std::vector<Tile> rest = remainder(*tile, tiles);

@@ -21,4 +21,15 @@ template <class N> glm::vec<3, N> withContours(const glm::vec<3, N>& color, N le
     return blended(color, glm::vec<3, N>(line, line, line), choose(width > N(0), share, N(0)));
 }
 
+/// Colour of a slice of strokes alone.
+inline constexpr double kStrokeGrey = 0.3;
+
+/// A colour of a slice with strokes of a lightness of -1..1: times 1 + strength * lightness, at most 1.
+template <class N> glm::vec<3, N> withStrokes(const glm::vec<3, N>& color, N lightness, N strength) {
+    const N factor = N(1) + strength * lightness;
+    return glm::vec<3, N>(smaller(color.x * factor, larger(color.x, N(1))),
+                          smaller(color.y * factor, larger(color.y, N(1))),
+                          smaller(color.z * factor, larger(color.z, N(1))));
+}
+
 } // namespace tessera::vis

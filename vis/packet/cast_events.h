@@ -38,6 +38,26 @@ inline Vec cellsInBox(const CastJob& job, const Vec& world) {
     return cells;
 }
 
+/// Strokes of a slice at places of the world: lightness times coverage, and coverage; twin: strokesAt in
+/// vis/scene/strokes.h.
+inline glm::vec<2, Floats> strokesAt(const StrokesView& strokes, const Vec& world, Mask seen) {
+    const auto along = [&](const glm::vec4& map) {
+        return world.x * Floats(map.x) + world.y * Floats(map.y) + world.z * Floats(map.z) + Floats(map.w - 0.5f);
+    };
+    const Floats x = along(strokes.across), y = along(strokes.up), left = roundDown(x), low = roundDown(y);
+    const auto within = [](Floats at, int size) { return toInts(clamped(at, Floats(0), Floats(size - 1))); };
+    const Ints columns[2] = {within(left, strokes.size.x), within(left + Floats(1), strokes.size.x)};
+    const Ints rows[2] = {within(low, strokes.size.y), within(low + Floats(1), strokes.size.y)};
+    glm::vec<2, Floats> out;
+    for (int part = 0; part < 2; ++part) {
+        const auto read = [&](int i, int j) {
+            return gatherFloats(strokes.texels + part, (rows[j] * Ints(strokes.size.x) + columns[i]) << 1, seen);
+        };
+        out[part] = mix(mix(read(0, 0), read(1, 0), x - left), mix(read(0, 1), read(1, 1), x - left), y - low);
+    }
+    return out;
+}
+
 template <bool Bcc, bool Exact> void addSlices(Caster<Bcc, Exact>& caster) {
     constexpr double kFaceTolerance = 1e-5; // in world units, for a slice on a face of the box
     const CastJob& job = caster.job;
@@ -55,10 +75,18 @@ template <bool Bcc, bool Exact> void addSlices(Caster<Bcc, Exact>& caster) {
         const Mask within =
             (at > -packet.phase - face) & (at <= packet.count - packet.phase + face) &
             (magnitude(inner(spreadOut<Floats>(slice.plane.normal), ray.direction)) > Floats(kParallel));
-        const Mask seen = packet.meets & within & found.present & packet.shows(at);
+        Mask seen = packet.meets & within & found.present & packet.shows(at);
         if (!anyOf(seen)) continue;
         const Floats place = multiplyAdd(found.value, Floats(look.placeScale), Floats(look.placeOffset));
         Vec color = colorAt(look.table, tablePlace(place), seen);
+        if (slice.strokes.texels) {
+            const glm::vec<2, Floats> strokes = strokesAt(slice.strokes, ray.origin + ray.direction * t, seen);
+            if (slice.strokes.grey) {
+                color = Vec(Floats(kStrokeGrey), Floats(kStrokeGrey), Floats(kStrokeGrey));
+                seen = seen & (strokes.y >= Floats(0.5f));
+            }
+            color = withStrokes(color, strokes.x, Floats(slice.strokes.strength));
+        }
         if (slice.contours > 0) {
             const Floats level = multiplyAdd(found.value, Floats(slice.levelScale), Floats(slice.levelOffset)) *
                                  Floats(slice.contours + 1);

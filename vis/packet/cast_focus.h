@@ -116,7 +116,7 @@ Focus focusAt(const FocusView& focus, const LayerView& layer, const Vec& cells, 
     for (std::size_t i = 0; i < focus.fields.size(); ++i) values[i] = read(*focus.fields[i]);
     Focus out;
     out.interest = interestOf(focus, values, cells, world, lanes);
-    const LensActionOf<Floats> lens = lensAction<Floats>(focus.lenses, layer.lens, world);
+    const LensActionOf<Floats> lens = lensAction<Floats>(focus.lenses, layer.lens, world, out.interest.doi);
     out.opacity = lens.opacity * brushedOpacity(layer.brushes, Floats(focus.contextOpacity), out.interest.doi);
     out.saturation = lens.saturation;
     return out;

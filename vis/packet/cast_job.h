@@ -90,6 +90,15 @@ struct LayerView {
     int lens = -1; ///< index of the lens that it is drawn in; -1: everywhere
 };
 
+/// Strokes of a slice: see StrokePicture.
+struct StrokesView {
+    const float* texels = nullptr; ///< pairs; null: there are none
+    glm::ivec2 size{1};
+    glm::vec4 across{0}, up{0}; ///< StrokeMap
+    float strength = 0;
+    bool grey = false;
+};
+
 /// A slice layer.
 struct SliceView {
     LayerView look; ///< its samples and colours, brushes and lens
@@ -97,6 +106,7 @@ struct SliceView {
     int contours = 0;
     float levelScale = 0, levelOffset = 0; ///< of contours: place in the range = sample * scale + offset
     float opacity = 1;
+    StrokesView strokes;
 };
 
 /// A BrushTest in samples of its channels.

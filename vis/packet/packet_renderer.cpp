@@ -38,8 +38,8 @@ bool isReady(const std::future<SharedVolume>& coming) {
 
 /// Whether tables and maps of two scenes are the same.
 bool sameTables(const Scene& a, const Scene& b) {
-    const auto sameLens = [](const Lens& one, const Lens& other) {
-        return one.name == other.name && one.enabled == other.enabled && one.marks == other.marks;
+    const auto sameLens = [&](const Lens& one, const Lens& other) {
+        return one.name == other.name && activeAt(one, a.time) == activeAt(other, b.time) && one.marks == other.marks;
     };
     const auto sameLayer = [](const Layer& one, const Layer& other) {
         const auto* slice = std::get_if<SliceLayer>(&one.technique);

@@ -66,6 +66,18 @@ Tabled tabled(const DrawnChannel& drawn, const PacketVolume& volume, bool alone,
 
 } // namespace
 
+namespace {
+
+StrokesView strokesOfSlice(const Scene& scene, int layer, const Strokes& strokes) {
+    const StrokePicture* const picture = strokesOf(scene, layer);
+    if (!picture) return {};
+    const StrokeMap map = strokeMap(*picture);
+    return {&picture->texels.data()->x, picture->size,    glm::vec4(map.across),
+            glm::vec4(map.up),          strokes.strength, strokes.grey};
+}
+
+} // namespace
+
 /// The samples of a layer, where they lie in its transfer function, its brushes and lens; not yet its table.
 LayerView PacketScene::viewOfLayer(const DrawnLayer& layer, glm::vec2 places, std::size_t index) const {
     LayerView out;
@@ -126,6 +138,7 @@ void PacketScene::placeSlices(const Scene& scene, const WorldFrame& frame) {
         slices_[i].plane = slicePlane(slice, frame, scene.cursor);
         slices_[i].contours = slice.contours;
         slices_[i].opacity = slice.opacity;
+        slices_[i].strokes = strokesOfSlice(scene, sliceLayers_[i], slice.strokes);
     }
 }
 

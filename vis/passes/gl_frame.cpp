@@ -24,7 +24,7 @@ void giveUp(RendererState& shared, ViewTarget& target, const RenderCall& call) {
 }
 
 /// Binds the textures of a plan's fields, and its tables.
-void bindPlan(RendererState& shared, const ViewTarget& target, const RenderCall& call) {
+void bindPlan(RendererState& shared, ViewTarget& target, const RenderCall& call) {
     const RayPlan& plan = call.plan;
     const RayUnits units = rayUnits(plan);
     for (std::size_t i = 0; i < plan.fields.size(); ++i) {
@@ -39,6 +39,7 @@ void bindPlan(RendererState& shared, const ViewTarget& target, const RenderCall&
                             [](const RayLayer& layer) { return layer.look & bitOf(LookFeature::Charcoal); }))
         glBindTextureUnit(GLuint(units.grain), shared.tools.grain.get());
     glBindTextureUnit(GLuint(units.lassos), shared.tools.brushes.update(plan.brushes));
+    glBindTextureUnit(GLuint(RayUnits::kStrokes), target.strokes.update(plan, call.scene));
 }
 
 /// Prepares the program of `own`, which is all or part of the call, for drawing; false while it is not ready.

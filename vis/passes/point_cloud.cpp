@@ -50,7 +50,7 @@ void PointCloud::upload(TexturesIn where, std::span<const CloudPoint> points) {
     impl_->array = makeVertexArray("points");
     const GLuint array = impl_->array.name();
     glVertexArrayVertexBuffer(array, 0, impl_->buffer.name(), 0, sizeof(CloudPoint));
-    for (const GLuint attribute : {0u, 1u}) {
+    for (const GLuint attribute : {0u, 1u, 2u, 3u}) {
         glEnableVertexArrayAttrib(array, attribute);
         glVertexArrayAttribFormat(array, attribute, 4, GL_FLOAT, GL_FALSE, attribute * GLuint(sizeof(glm::vec4)));
         glVertexArrayAttribBinding(array, attribute, 0);
@@ -76,14 +76,18 @@ TextureName PointCloud::draw(const CloudView& view) {
     glDisable(GL_DEPTH_TEST);
     const double share = std::clamp(view.share, 0.0, 1.0);
     if (const auto drawn = GLsizei(std::ceil(double(own.count) * share)); drawn > 0) {
-        const glm::mat4 rotation(view.rotation);
+        const glm::mat4 rotation(view.rotation.firstAxes()), further(view.rotation.furtherAxes());
+        const GLuint splat = own.splat.name();
         const double smaller = std::min(own.size.x, own.size.y);
         // Radii refer to the centre of the picture, where the magnification depends only on the eye distances.
         const double middle = project(view.projection, 1, glm::dvec4(0)).scale / view.projection.zoom;
-        glProgramUniformMatrix4fv(own.splat.name(), glGetUniformLocation(own.splat.name(), "rotation"), 1, GL_FALSE,
-                                  &rotation[0][0]);
-        own.splat.set("eyes", glm::vec3(std::max(view.projection.eye, 1.05), std::max(view.projection.eye3, 1.05),
-                                        view.projection.zoom));
+        glProgramUniformMatrix4fv(splat, glGetUniformLocation(splat, "rotation"), 1, GL_FALSE, &rotation[0][0]);
+        glProgramUniformMatrix4fv(splat, glGetUniformLocation(splat, "furtherRotation"), 1, GL_FALSE, &further[0][0]);
+        own.splat.set("eyes", glm::vec4(std::max(view.projection.eye, 1.05), std::max(view.projection.eye3, 1.05),
+                                        view.projection.zoom, view.projection.parallel ? 1 : 0));
+        own.splat.set("stereo", glm::vec2(view.projection.aside, view.projection.convergence));
+        own.splat.set("light", glm::vec4(view.light.towards));
+        own.splat.set("ambient", float(view.light.ambient));
         own.splat.set("perPixel", glm::vec2(smaller / glm::dvec2(own.size)));
         own.splat.set("radius", float(view.radiusPixels / middle));
         own.splat.set("opacityPower", float(double(own.count) / drawn));

@@ -2,6 +2,7 @@
 
 #include "vis/demand/box_lines.h"
 #include "vis/formulas/context_blur.h"
+#include "vis/formulas/depth_mask.h"
 #include "vis/optics/grain.h"
 #include "vis/processor/presented.h"
 #include "vis/raycast/look_uniforms.h"
@@ -27,11 +28,22 @@ ProgramRecipe resolveRecipe(const Scene& scene, bool lines, bool whole) {
             "resolve.frag.glsl",
             {},
             {{"BLUR", flag(blursContext(scene))},
+             {"DEPTH_MASK", flag(scene.depthMask.any())},
              {"LINES", flag(lines)},
              {"WHOLE", flag(whole)},
              {"TONE", flag(scene.tone.curve != ToneCurve::None)},
              {"PAPER", flag(isRough(paperOf(scene)))},
              {"GROUND", flag(scene.showGround)}}};
+}
+
+void setDepthMask(const RendererState& shared, const Program& resolve, const ViewTarget& target, const Scene& scene) {
+    if (!scene.depthMask.any()) return;
+    const WorldFrame frame = shared.source ? worldFrame(shared.source->info(), scene.stretch) : WorldFrame{};
+    const DepthSpan span = depthSpan(scene.camera, frame);
+    resolve.set("depthSpan", glm::vec2(span.near, span.perDistance));
+    resolve.set("depthRadius", scene.depthMask.width * float(target.buffers.size.y));
+    resolve.set("depthMask", glm::vec2(scene.depthMask.strength, scene.depthMask.lighten ? 1 : 0));
+    resolve.set("depthTaps", kDepthTaps);
 }
 
 /// Sets all uniforms and textures of the presenting program, except its viewport.
@@ -55,7 +67,8 @@ void setPresented(RendererState& shared, const Program& resolve, const ViewTarge
     resolve.set("seen", kSeenUnit);
     resolve.set("blurRadius", scene.selection.contextBlur * float(target.buffers.size.y));
     resolve.set("blurTaps", kBlurTaps);
-    if (blursContext(scene)) glBindTextureUnit(GLuint(kSeenUnit), from.pick.name());
+    if (blursContext(scene) || scene.depthMask.any()) glBindTextureUnit(GLuint(kSeenUnit), from.pick.name());
+    setDepthMask(shared, resolve, target, scene);
     resolve.set("tone", glm::vec2(std::exp2(scene.tone.exposure), scene.tone.white));
     resolve.set("edgeCount", int(lines.edges.size()));
     resolve.set("frontCount", lines.front);

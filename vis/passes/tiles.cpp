@@ -152,8 +152,8 @@ void drawTiles(RendererState& shared, ViewTarget& target, const RenderCall& call
         target.pace().finishPass(state.stale().area(), target.buffers.everything().area());
         if (request.moving) break;
     }
-    // Context blur crosses the borders of tiles, so it needs the whole picture.
-    if (blursContext(call.scene) && state.tilesDone() >= perPass) {
+    // Context blur and shadows of depth cross the borders of tiles, so they need the whole picture.
+    if ((blursContext(call.scene) || call.scene.depthMask.any()) && state.tilesDone() >= perPass) {
         present(shared, target, call.scene, target.buffers.full, target.buffers.everything());
         glBindTextureUnit(0, call.plan.fields[0].texture);
     }

@@ -28,8 +28,10 @@ std::vector<Splat> splatsOf(std::span<const CloudPoint> points, const CloudView&
     const double middle = project(view.projection, 1, glm::dvec4(0)).scale / view.projection.zoom;
     std::vector<Splat> out;
     out.reserve(count);
+    const glm::dmat4 first = view.rotation.firstAxes(), further = view.rotation.furtherAxes();
     for (const CloudPoint& point : points.first(count)) {
-        const Projected4 placed = project(view.projection, 1, view.rotation * glm::dvec4(point.position));
+        const Projected4 placed =
+            project(view.projection, 1, first * glm::dvec4(point.position) + further * glm::dvec4(point.further));
         const double wanted = double(view.radiusPixels) / middle * placed.scale;
         const double drawn = std::max(wanted, 0.75); // at least a pixel wide; smaller ones are fainter instead
         const double opacity =
@@ -37,7 +39,7 @@ std::vector<Splat> splatsOf(std::span<const CloudPoint> points, const CloudView&
         const double near = 1 - std::clamp(placed.depth, 0.0, 1.0);
         out.push_back({.middle = (placed.at * (std::min(size.x, size.y) / size) + 1.0) / 2.0 * size,
                        .half = drawn + 0.5,
-                       .color = glm::dvec3(point.color),
+                       .color = glm::dvec3(point.color) * litBy(view.light, first * glm::dvec4(point.normal)),
                        .opacity = opacity * wanted * wanted / (drawn * drawn),
                        .weight = std::clamp(8 * near * near * near, 0.01, 8.0)}); // equation 10
     }

@@ -2,7 +2,6 @@
 
 #include "vis/gl/texture_name.h"
 #include "vis/shapes/cloud4.h"
-#include "vis/shapes/rotation4.h"
 
 #include <span>
 
@@ -10,8 +9,9 @@ namespace tessera::vis {
 
 /// How a cloud of points is seen.
 struct CloudView {
-    glm::dmat4 rotation{1};
+    RotationN rotation;
     Projection4 projection;
+    Light4 light;
     glm::ivec2 size{512, 512};
     float radiusPixels = 3; ///< of a splat in the centre of the picture, without magnification
     double share =

@@ -40,17 +40,20 @@ private:
     };
     const Slot& slot(std::uint32_t number) const { return blocks_[number / kBlock][number % kBlock]; }
     glm::dvec4 pixels(glm::dvec3 world) const;
+    glm::dvec3 corner(const SurfaceLayer& layer, std::uint32_t vertex) const;
     void addMesh(std::size_t layer);
     void addSegment(const std::array<SurfacePoint, 2>& ends, const SurfaceLayer& layer);
     void addLines(const SurfaceLayer& layer);
     void addLine(const std::array<glm::dvec4, 3>& clip, const std::array<SurfacePoint, 3>& corners,
                  const SurfaceLayer& layer);
 
+    const SurfaceShading& shading_;
     const std::vector<SurfaceLayer>& layers_;
     WorldFrame frame_;
     glm::ivec2 size_;
     glm::dvec2 jitter_;
     glm::dmat4 toClip_, toPixels_; ///< of the world; toPixels_: x and y in pixels, times w
+    double pixel_ = 0;             ///< world edge of a pixel, by w
     std::vector<std::vector<Slot>> blocks_;
     std::vector<Piece> lines_;
 };

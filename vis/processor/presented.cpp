@@ -88,7 +88,8 @@ glm::u8vec3 screenColor(glm::dvec3 linear) {
 
 bool presentsPlainly(const Scene& scene) {
     const std::optional<Paper> paper = paperOf(scene);
-    return scene.tone.curve == ToneCurve::None && !(paper && paper->tooth > 0) && !blursContext(scene);
+    return scene.tone.curve == ToneCurve::None && !(paper && paper->tooth > 0) && !blursContext(scene) &&
+           !scene.depthMask.any();
 }
 
 std::vector<std::uint8_t> presented(const packet::PacketPicture& picture, const packet::PixelBox& box,

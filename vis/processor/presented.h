@@ -18,7 +18,7 @@ bool presentsPlainly(const Scene& scene);
 
 /// Pixels of `box` in a picture, of which `picture` holds a part at least (elsewhere nothing is seen), over the
 /// background or paper, with the lines of the box, tone-mapped: RGBA8, sRGB, rows bottom up. Not premultiplied where
-/// the scene shows no ground. Blur is left to others.
+/// the scene shows no ground. Blur and shadows of depth are left to others.
 std::vector<std::uint8_t> presented(const packet::PacketPicture& picture, const packet::PixelBox& box,
                                     const Scene& scene, const BoxLines& lines,
                                     packet::InstructionSet with = packet::instructionSets().back());

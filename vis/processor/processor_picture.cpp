@@ -4,6 +4,7 @@
 #include "vis/image/light_picture.h"
 #include "vis/optics/jitter.h"
 #include "vis/packet/packet_refusal.h"
+#include "vis/processor/masked_depths.h"
 #include "vis/processor/presented.h"
 #include "vis/processor/rasterized.h"
 #include "volume/base/error.h"
@@ -62,7 +63,10 @@ void ProcessorPicture::draw(const Scene& scene, glm::ivec2 size, const Data& dat
         if (scene.showBox) lines = boxLines(scene.camera, worldFrame(source.info(), scene.stretch).halfSize, size);
     }
     texture_.size = size;
-    texture_.rgba = presented(made, made.box, scene, lines);
+    const bool masks = scene.depthMask.any() && data.volumes;
+    texture_.rgba =
+        presented(masks ? maskedDepths(made, scene, worldFrame(data.volumes->source()->info(), scene.stretch)) : made,
+                  made.box, scene, lines);
     volumes_ = data.volumes;
     scene_ = scene;
     linear_ = std::move(made);

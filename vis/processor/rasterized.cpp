@@ -123,10 +123,10 @@ private:
     std::optional<std::pair<std::uint32_t, Piece>> last_;
 };
 
-/// Whether nothing of the geometry of a scene is cut away, by places or by a look.
+/// Whether nothing of the geometry of a scene is cut away, by places, by a look or as a rim.
 bool isWhole(const Scene& scene) {
-    const auto looks = [](const GeometryLayer& layer) { return layer.style.look.any(); };
-    return scene.clips.empty() && scene.lenses.empty() && std::ranges::none_of(scene.geometry, looks);
+    const auto cuts = [](const GeometryLayer& layer) { return layer.style.look.any() || layer.style.rim > 0; };
+    return scene.clips.empty() && scene.lenses.empty() && std::ranges::none_of(scene.geometry, cuts);
 }
 
 } // namespace

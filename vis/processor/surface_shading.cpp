@@ -114,6 +114,11 @@ std::optional<SurfaceColor> SurfaceShading::operator()(const SurfaceLayer& layer
     double opacity = std::min(double(layer.layer->style.opacity) * double(tint.a) * action.opacity, 1.0);
     if (opacity <= 0) return std::nullopt;
     const glm::dvec3 normal = normalOf(spot.here);
+    if (layer.layer->style.rim > 0) {
+        const bool outwards = glm::dot(spot.here.direction, spot.here.direction) >= 1e-20;
+        if (!line && (glm::dot(normal, toViewer(world)) > 0 || !outwards)) return std::nullopt;
+        return SurfaceColor{along(world), glm::dvec4(ownColor(layer, spot.here.value) * opacity, opacity)};
+    }
     glm::dvec3 color = tint.r >= 0 ? glm::dvec3(glm::vec3(tint)) : ownColor(layer, spot.here.value);
     color = glm::mix(glm::dvec3(luminance(color)), color, action.saturation);
     const Look& look = layer.layer->style.look;

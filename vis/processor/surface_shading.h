@@ -43,12 +43,12 @@ public:
     const std::vector<SurfaceLayer>& layers() const { return layers_; }
     /// Distance along the ray to a point.
     double along(glm::dvec3 world) const;
+    glm::dvec3 toViewer(glm::dvec3 world) const; ///< direction
     /// nullopt: nothing is seen there, for a clip, a lens or a look.
     std::optional<SurfaceColor> operator()(const SurfaceLayer& layer, bool line, const SurfaceSpot& spot,
                                            glm::vec4 tint = kNoTint) const;
 
 private:
-    glm::dvec3 toViewer(glm::dvec3 world) const;
     glm::dvec3 ownColor(const SurfaceLayer& layer, double value) const;
     LookSample lookSample(const GeometryLayer& layer, const SurfaceSpot& spot,
                           const std::array<glm::dvec3, 3>& normals) const;

@@ -26,6 +26,8 @@ void addLenses(ProgramRecipe& recipe, const std::vector<PlacedLens>& lenses, con
     define("LENS_BENDING(i)",
            choice(lenses, [](const PlacedLens& lens) { return lens.effect == LensEffect::Magnify; }));
     flag("LENS_ACTS", !lenses.empty() && (std::ranges::any_of(lenses, &PlacedLens::acts) || anyOwned(scene)));
+    flag("LENS_SELECTS",
+         std::ranges::any_of(lenses, [](const PlacedLens& lens) { return lens.shape == LensShape::Selection; }));
     flag("LENS_BENDS", any(LensEffect::Magnify));
     flag("LENS_FOCUS", any(LensEffect::Focus));
 }

@@ -28,6 +28,8 @@ LightBaker::MediumKey LightBaker::keyOf(const Scene& scene, const LightGrid& gri
     used.lighting = {};
     used.lighting.shadows.meshes = scene.lighting.shadows.meshes;
     used.tone = {};
+    used.depthMask = {};
+    used.strokes.clear();
     used.background = used.boxColor = glm::vec3(0);
     used.paper.reset();
     used.showGround = used.showBox = false;

@@ -102,9 +102,9 @@ RayLayer volumeUse(RayPlan& plan, const DrawnLayer& drawn, Filter filter) {
 }
 
 /// Adds a layer to the plan, with its fields.
-void planLayer(RayPlan& plan, const DrawnLayer& drawn, Filter filter) {
+void planLayer(RayPlan& plan, const DrawnLayer& drawn, Filter filter, bool strokes) {
     if (drawn.slice) {
-        plan.slices.push_back({drawn.layer, fieldOf(plan, drawn.shown), drawn.lens, drawn.brushes, 0});
+        plan.slices.push_back({drawn.layer, fieldOf(plan, drawn.shown), drawn.lens, drawn.brushes, 0, strokes});
         return;
     }
     if (drawn.volume)
@@ -125,7 +125,7 @@ std::vector<std::string> planLayers(RayPlan& plan, const DrawnScene& drawn, cons
     std::vector<std::string> left;
     for (const DrawnLayer& layer : drawn.layers) {
         const RayPlan former = plan;
-        planLayer(plan, layer, scene.render.filter);
+        planLayer(plan, layer, scene.render.filter, strokesOf(scene, layer.layer) != nullptr);
         if (int(plan.fields.size()) <= plan.mostFields) continue;
         plan = former;
         left.push_back(shownChannel(scene.layers[std::size_t(layer.layer)].technique));
@@ -157,7 +157,7 @@ void planBrushes(RayPlan& plan, const DrawnScene& drawn, const Scene& scene, con
 
 int mostFields(int samplers, const Scene& scene, bool bricked) {
     // Textures besides fields: transfer tables and block distances; lassos, plane tables, light maps, light volume,
-    // grain, geometry.
+    // grain, geometry, strokes.
     const auto charcoal = [](const Layer& layer) {
         const Look* look = lookOf(layer.technique);
         return look && look->charcoal;
@@ -173,7 +173,7 @@ int mostFields(int samplers, const Scene& scene, bool bricked) {
     const bool planes = std::ranges::any_of(scene.transfer, regions) || std::ranges::any_of(scene.layers, integrated);
     const int others = 2 + lasso + planes + (usesMaps(scene.lighting) ? 2 : 0) +
                        (scene.lighting.shadows.any() ? 2 : 0) + std::ranges::any_of(scene.layers, charcoal) +
-                       (peelsOf(scene) > 0 ? 2 : 0);
+                       (peelsOf(scene) > 0 ? 2 : 0) + !scene.strokes.empty();
     return std::min(kMostFields, samplers - others) / (bricked ? 2 : 1);
 }
 

@@ -57,7 +57,8 @@ struct RayLayer {
 struct SliceUse {
     int layer = 0, field = 0, lens = -1;
     BrushEffect brushes = BrushEffect::Fade;
-    int row = 0; ///< of the transfer tables
+    int row = 0;          ///< of the transfer tables
+    bool strokes = false; ///< has strokes
 };
 
 /// Maximal number of fields of a plan, regardless of the driver.

@@ -90,6 +90,8 @@ void addSlices(Defines define, const RayPlan& plan) {
     define.each("SLICE_FIELD(i)", plan.slices, [](const SliceUse& slice) { return slice.field; });
     define.each("SLICE_LENS(i)", plan.slices, [](const SliceUse& slice) { return slice.lens; });
     define.each("SLICE_BRUSHED(i)", plan.slices, [](const SliceUse& slice) { return slice.brushes; });
+    define.flag("STROKES", std::ranges::any_of(plan.slices, &SliceUse::strokes));
+    define.each("SLICE_STROKES(i)", plan.slices, [](const SliceUse& slice) { return int(slice.strokes); });
 }
 
 void addTables(Defines define, const RayPlan& plan) {

@@ -6,6 +6,7 @@
 #include "vis/raycast/light_uniforms.h"
 #include "vis/raycast/look_uniforms.h"
 #include "vis/raycast/ray_field.h"
+#include "vis/raycast/stroke_uniforms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -141,6 +142,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     setCamera(program, scene, double(size.x) / size.y);
     setFields(program, plan, grid);
     setLayers(program, plan, scene, info, frame);
+    setStrokeUniforms(program, plan, scene);
     setBrushUniforms(program, plan, scene.selection);
     // A data set of a single slice has no thickness; give it enough for rays to intersect a slice.
     program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));

@@ -172,6 +172,10 @@ Ray cameraRay(const Camera& camera, double aspect, glm::dvec2 ndc) {
     return {target + toWorld * origin, toWorld * direction};
 }
 
+double pixelAtDepthOne(const Camera& camera, glm::ivec2 size) {
+    return 2 / (size.y * projectionMatrix(camera, static_cast<double>(size.x) / size.y)[1][1]);
+}
+
 void orbit(Camera& camera, glm::vec2 from, glm::vec2 to) {
     const glm::vec3 a = trackball(from), b = trackball(to);
     const glm::vec3 axis = glm::cross(a, b);

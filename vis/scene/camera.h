@@ -95,6 +95,9 @@ Ray cameraRay(const Camera& camera, double aspect, glm::dvec2 ndc);
 /// The direction in which the camera looks, perpendicular to the focal plane; length 1.
 glm::dvec3 forwardOf(const Camera& camera);
 
+/// World edge of a pixel at depth 1 (w of clip space): at other depths that times w, which is 1 in parallel projection.
+double pixelAtDepthOne(const Camera& camera, glm::ivec2 size);
+
 /// Distance of the focal plane from the eye, along the view; at least 0.001 in perspective.
 double focalDistance(const Camera& camera);
 /// Radius of the disc that a point at `depth` from the eye, along the view, is blurred to by a thin lens, in heights of

@@ -54,6 +54,11 @@ struct GeometryLayer {
     bool operator==(const GeometryLayer&) const = default;
 };
 
+/// The layers, after each one with GeometryStyle::halo its halo: a rim of a colour (sRGB) behind its lines and the
+/// closed meshes of it whose normals point outwards, which hides what is farther away (line drawings that overlap come
+/// apart: A. Appel, F. J. Rohlf, A. J. Stein: The haloed line effect for hidden line elimination, SIGGRAPH 1979).
+std::vector<GeometryLayer> withHalos(const std::vector<GeometryLayer>& layers, glm::vec3 color);
+
 /// Number of depth-peeling layers per pixel if some surfaces are translucent. Surfaces behind the last one are omitted.
 inline constexpr int kPeels = 4;
 

@@ -129,6 +129,12 @@ struct GlyphLayer {
                                               .unit = "pixel",
                                               .range = Range{0.5, 20},
                                               .group = kColors});
+        visit(self.style.halo, FieldInfo{.key = "halo",
+                                         .doc = "Width of a rim in the colour of the ground that hides what stands "
+                                                "behind; 0 = none",
+                                         .unit = "pixel",
+                                         .range = Range{0, 20},
+                                         .group = kColors});
         visit(self.style.look, lookField());
     }
 };

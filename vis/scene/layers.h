@@ -4,6 +4,7 @@
 #include "vis/scene/flow_layer.h"
 #include "vis/scene/glyph_layer.h"
 #include "vis/scene/look.h"
+#include "vis/scene/strokes.h"
 #include "volume/base/data_units.h"
 #include "volume/base/describe.h"
 
@@ -124,6 +125,7 @@ struct SliceLayer {
     glm::vec3 normal{0, 0, 1}; ///< of an oblique slice, world axes
     int contours = 0;          ///< contour lines over the colour range
     float opacity = 1;
+    Strokes strokes = {};
     bool operator==(const SliceLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{.key = "channel", .doc = "Parameter shown", .refersTo = "channel"});
@@ -142,6 +144,7 @@ struct SliceLayer {
         visit(self.contours,
               FieldInfo{.key = "contours", .doc = "Number of contour lines, 0 = none", .range = Range{0, 50}});
         visit(self.opacity, FieldInfo{.key = "opacity", .doc = "Opacity of the slice", .range = Range{0, 1}});
+        visit(self.strokes, strokesField());
     }
 };
 

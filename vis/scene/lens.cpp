@@ -33,7 +33,7 @@ void setEffect(PlacedLens& placed, const Lens& lens) {
         placed.magnification = 1 + strength * (double(lens.magnification) - 1);
         break;
     case LensEffect::Focus:
-        placed.focus = strength;
+        placed.focus = lens.inSpace() ? strength : 0; // brushes cannot be confined to themselves
         break;
     }
 }
@@ -68,10 +68,10 @@ void setPlace(PlacedLens& placed, const Lens& lens, const Camera& camera) {
 } // namespace
 
 std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const WorldFrame& frame, const Camera& camera,
-                                    glm::dvec3 cursor) {
+                                    glm::dvec3 cursor, std::optional<double> time) {
     std::vector<PlacedLens> all;
     for (const Lens& lens : lenses) {
-        if (!lens.enabled || all.size() == std::size_t(kMaxLenses)) continue;
+        if (!(time ? activeAt(lens, *time) : lens.enabled) || all.size() == std::size_t(kMaxLenses)) continue;
         PlacedLens placed;
         placed.name = lens.name;
         placed.shape = lens.shape;

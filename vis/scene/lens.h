@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 /// Magic lenses: regions of space with a different rendering (C. Tominski et al.: Interactive lenses for visualization,
@@ -39,13 +40,18 @@ struct Lens {
     float magnification = 2.5f;  ///< at the centre; Magnify only
     float detail = 1;            ///< factor on RenderParams::detail for the bricks it intersects
     bool marks = true;
-    glm::vec3 color{0.55f, 0.85f, 1.0f}; ///< sRGB, outline
+    glm::vec3 color{0.55f, 0.85f, 1.0f};                 ///< sRGB, outline
+    std::optional<double> fromTime = {}, untilTime = {}; ///< first and last time at which it acts; nothing: no end
 
     bool operator==(const Lens&) const = default;
+    /// Whether it has a place in space.
+    bool inSpace() const { return shape != LensShape::Selection; }
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kPlace = "Place", kData = "Data inside", kList = "Name and colour";
         visit(self.shape, FieldInfo{.key = "shape",
-                                    .doc = "Shape; a disc faces the viewer and extends through the whole depth",
+                                    .doc = "Shape; a disc faces the viewer and extends through the whole depth; "
+                                           "selection: what the brushes select, wherever it lies (volumes, slices and "
+                                           "surfaces met by rays; flow, glyphs and polygons are as outside)",
                                     .names = kLensShapeNames});
         visit(self.effect,
               FieldInfo{.key = "effect",
@@ -57,26 +63,39 @@ struct Lens {
         visit(self.center, FieldInfo{.key = "center",
                                      .doc = "Centre of the lens",
                                      .unit = kUnitOfLengths,
-                                     .applies = !self.followsCursor});
-        visit(self.followsCursor,
-              FieldInfo{.key = "followsCursor", .doc = "Follow the linked cross-hair", .group = kPlace});
+                                     .applies = !self.followsCursor && self.inSpace()});
+        visit(self.followsCursor, FieldInfo{.key = "followsCursor",
+                                            .doc = "Follow the linked cross-hair",
+                                            .applies = self.inSpace(),
+                                            .group = kPlace});
         visit(self.followsPointer,
               FieldInfo{.key = "followsPointer",
                         .doc = "Follow the mouse over 3D views and slices (F pins and releases it)",
+                        .applies = self.inSpace(),
                         .group = kPlace});
         visit(self.size, FieldInfo{.key = "size",
                                    .doc = "Radii or half edge lengths along its axes; longest edge of the data = 1",
                                    .range = Range{0.005, 2},
-                                   .logScale = true});
+                                   .logScale = true,
+                                   .applies = self.inSpace()});
         visit(self.rotation, FieldInfo{.key = "rotation",
                                        .doc = "Rotation around x, then y, then z",
                                        .unit = "deg",
                                        .range = Range{-180, 180},
-                                       .applies = self.shape != LensShape::Disc,
+                                       .applies = self.inSpace() && self.shape != LensShape::Disc,
                                        .group = kPlace});
         visit(self.rim, FieldInfo{.key = "rim",
                                   .doc = "Width of the soft edge, as a share of the radius; 0 = a sharp edge",
-                                  .range = Range{0, 1}});
+                                  .range = Range{0, 1},
+                                  .applies = self.inSpace()});
+        visit(self.fromTime, FieldInfo{.key = "fromTime",
+                                       .doc = "First time at which it acts; none: from the first one on",
+                                       .unit = kUnitOfTimes,
+                                       .group = kPlace});
+        visit(self.untilTime, FieldInfo{.key = "untilTime",
+                                        .doc = "Last time at which it acts; none: until the last one",
+                                        .unit = kUnitOfTimes,
+                                        .group = kPlace});
         visit(self.strength, FieldInfo{.key = "strength", .doc = "Strength of the effect", .range = Range{0, 1}});
         visit(self.magnification, FieldInfo{.key = "magnification",
                                             .doc = "Magnify: magnification in the centre",
@@ -98,11 +117,20 @@ struct Lens {
     }
 };
 
+/// Whether a lens acts at a time.
+inline bool activeAt(const Lens& lens, double time) {
+    return lens.enabled && time >= lens.fromTime.value_or(time) && time <= lens.untilTime.value_or(time);
+}
+/// Whether it marks the samples inside of it in plots and tables at a time; a lens of a selection would mark that.
+inline bool marksAt(const Lens& lens, double time) {
+    return activeAt(lens, time) && lens.marks && lens.inSpace();
+}
+
 inline constexpr int kMaxLenses = 8; ///< further ones are ignored
 
 /// A lens in world space. A point's lens coordinates are u = toUnit (p - center); its normalised radius, 0 at the
 /// centre and 1 on the outline, is |u| (sphere), max |u_i| (box), max(|u_xy|, |u_z|) (cylinder), |u_xy| / (1 + u_z)
-/// (disc: in the picture |u_xy| at the depth of its centre).
+/// (disc: in the picture |u_xy| at the depth of its centre). The weight of a selection is the degree of interest.
 struct PlacedLens {
     std::string name;
     LensShape shape = LensShape::Sphere;
@@ -124,46 +152,48 @@ struct PlacedLens {
                                         spreadOut<N>(toUnit[2]) * from.z);
     }
     double radius(glm::dvec3 world) const { return radius<double>(world); }
-    /// 1 inside, 0 outside, smoothstep over the rim; reversed if inverted.
-    template <class N> N weight(const glm::vec<3, N>& world) const {
-        const N own = lensWeight(radius(world), rim);
+    /// 1 inside, 0 outside, smoothstep over the rim; reversed if inverted. `doi`: degree of interest there.
+    template <class N> N weight(const glm::vec<3, N>& world, const std::type_identity_t<N>& doi = N(0)) const {
+        const N own = shape == LensShape::Selection ? doi : lensWeight(radius(world), rim);
         return inverted ? N(1) - own : own;
     }
-    double weight(glm::dvec3 world) const { return weight<double>(world); }
+    double weight(glm::dvec3 world, double doi = 0) const { return weight<double>(world, doi); }
     /// The position whose data are shown at `world`: nearer to the centre by lensShare().
     glm::dvec3 bend(glm::dvec3 world) const;
     /// Whether it changes opacity or saturation of the layers below.
     bool acts() const { return effect != LensEffect::Magnify && effect != LensEffect::Focus; }
 };
 
-/// The enabled lenses, at most kMaxLenses, in order.
+/// The enabled lenses, at most kMaxLenses, in order; with `time` those that act then.
 std::vector<PlacedLens> placeLenses(const std::vector<Lens>& lenses, const WorldFrame& frame, const Camera& camera,
-                                    glm::dvec3 cursor);
+                                    glm::dvec3 cursor, std::optional<double> time = {});
 
 /// Index of the lens with a name, -1 if there is none.
 int findLens(const std::vector<PlacedLens>& lenses, const std::string& name);
 /// Index of the lens that a layer is drawn in: -1 for everywhere (""), nullopt if there is none of that name.
 std::optional<int> lensOf(const std::vector<PlacedLens>& lenses, const std::string& name);
 
-/// Effect of all lenses on a layer at a position; the layer belongs to lens `own` (-1: to none).
+/// Effect of all lenses on a layer at a position with this degree of interest; the layer belongs to lens `own` (-1: to
+/// none).
 template <class N> struct LensActionOf {
     N opacity{1}, saturation{1}; ///< factors
 };
 using LensAction = LensActionOf<double>;
 template <class N>
-LensActionOf<N> lensAction(std::span<const PlacedLens> lenses, int own, const glm::vec<3, N>& world) {
+LensActionOf<N> lensAction(std::span<const PlacedLens> lenses, int own, const glm::vec<3, N>& world,
+                           const std::type_identity_t<N>& doi = N(0)) {
     LensActionOf<N> action;
-    if (own >= 0) action.opacity = lenses[std::size_t(own)].weight(world);
+    if (own >= 0) action.opacity = lenses[std::size_t(own)].weight(world, doi);
     for (const PlacedLens& lens : lenses.subspan(std::size_t(own) + 1)) {
-        const N weight = lens.weight(world);
+        const N weight = lens.weight(world, doi);
         action.opacity = action.opacity * blended(N(lens.outside), N(lens.inside), weight);
         action.saturation = action.saturation * blended(N(1), N(lens.saturation), weight);
     }
     return action;
 }
 
-inline LensAction lensAction(const std::vector<PlacedLens>& lenses, int own, glm::dvec3 world) {
-    return lensAction<double>(lenses, own, world);
+inline LensAction lensAction(const std::vector<PlacedLens>& lenses, int own, glm::dvec3 world, double doi = 0) {
+    return lensAction<double>(lenses, own, world, doi);
 }
 
 /// Applies all magnifying lenses, the last of the list first. Positions inside the box stay inside.

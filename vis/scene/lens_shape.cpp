@@ -67,6 +67,8 @@ void lensOutline(LensShape shape, glm::dvec3 eye, bool perspective, const Line& 
     case LensShape::Disc:
         circle(line, {}, x, y, 1);
         break;
+    case LensShape::Selection:
+        break;
     }
 }
 

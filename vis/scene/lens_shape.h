@@ -9,9 +9,10 @@
 /// Properties of the lens shapes. Positions are in lens coordinates (PlacedLens::toUnit).
 namespace tessera::vis {
 
-/// A disc faces the viewer and extends along the view through everything that it covers in the picture.
-enum class LensShape { Sphere, Box, Cylinder, Disc };
-inline constexpr std::string_view kLensShapeNames[] = {"sphere", "box", "cylinder", "disc"};
+/// A disc faces the viewer and extends along the view through everything that it covers in the picture. A selection is
+/// no shape in space: its inside is what the brushes select, wherever it lies (PlacedLens::weight).
+enum class LensShape { Sphere, Box, Cylinder, Disc, Selection };
+inline constexpr std::string_view kLensShapeNames[] = {"sphere", "box", "cylinder", "disc", "selection"};
 
 /// Normalised radius: 0 at the centre, 1 on the outline; twin: lensRadius in vis/shaders/lib/sampling/lens.glsl.
 template <class N> N lensRadius(LensShape shape, const glm::vec<3, N>& place) {
@@ -25,6 +26,8 @@ template <class N> N lensRadius(LensShape shape, const glm::vec<3, N>& place) {
         return larger(across, magnitude(place.z));
     case LensShape::Disc:
         return across / larger(N(1) + place.z, N(1e-6));
+    case LensShape::Selection:
+        return N(2); // nowhere inside
     }
     return N(0);
 }

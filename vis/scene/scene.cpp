@@ -15,8 +15,9 @@ const TransferFunction& transferFor(const Scene& scene, const std::string& name)
 }
 
 bool lensesBend(const Scene& scene) {
-    return std::ranges::any_of(scene.lenses,
-                               [](const Lens& lens) { return lens.enabled && lens.effect == LensEffect::Magnify; });
+    return std::ranges::any_of(scene.lenses, [&](const Lens& lens) {
+        return activeAt(lens, scene.time) && lens.inSpace() && lens.effect == LensEffect::Magnify;
+    });
 }
 
 int peelsOf(const Scene& scene) {
@@ -33,6 +34,26 @@ int peelsOf(const Scene& scene) {
     return peels;
 }
 
+std::vector<GeometryLayer> withHalos(const std::vector<GeometryLayer>& layers, glm::vec3 color) {
+    std::vector<GeometryLayer> out;
+    for (const GeometryLayer& layer : layers) {
+        out.push_back(layer);
+        if (!(layer.style.halo > 0)) continue;
+        GeometryLayer& halo = out.emplace_back(layer);
+        halo.style.rim = layer.style.halo;
+        halo.style.color = color;
+        halo.style.look = {};
+        halo.channel.clear();
+    }
+    return out;
+}
+
+const StrokePicture* strokesOf(const Scene& scene, int layer) {
+    for (const SliceStrokes& each : scene.strokes)
+        if (each.layer == layer) return each.picture.get();
+    return nullptr;
+}
+
 bool drawn(const Scene& scene, const GeometryLayer& layer) {
     // Without an active brush there is no context.
     return layer.geometry && layer.style.opacity > 0 &&
@@ -40,7 +61,7 @@ bool drawn(const Scene& scene, const GeometryLayer& layer) {
 }
 
 std::vector<PlacedLens> placeLenses(const Scene& scene, const WorldFrame& frame) {
-    return placeLenses(scene.lenses, frame, scene.camera, scene.cursor);
+    return placeLenses(scene.lenses, frame, scene.camera, scene.cursor, scene.time);
 }
 
 std::optional<Paper> paperOf(const Scene& scene) {

@@ -2,6 +2,7 @@
 
 #include "vis/scene/camera.h"
 #include "vis/scene/clipping.h"
+#include "vis/scene/depth_mask.h"
 #include "vis/scene/geometry.h"
 #include "vis/scene/layers.h"
 #include "vis/scene/lens.h"
@@ -126,10 +127,12 @@ struct Scene {
     Selection selection;
     RenderParams render;
     std::vector<GeometryLayer> geometry; ///< meshes and lines, computed outside the renderer
+    std::vector<SliceStrokes> strokes;   ///< of slices, computed outside the renderer
     Lighting lighting;
     std::vector<Clip> clips; ///< only what all keep is drawn
     std::vector<Lens> lenses;
     Tone tone;
+    DepthMask depthMask;
     glm::dvec3 stretch{1};
     glm::dvec3 cursor{0}; ///< physical
     double time = 0;
@@ -151,6 +154,9 @@ const TransferFunction& transferFor(const Scene& scene, const std::string& name)
 
 /// Number of depth-peeling layers of the scene's geometry: 0 without geometry, 1 if all is opaque, else kPeels.
 int peelsOf(const Scene& scene);
+
+/// The strokes of a slice, null where it has none (yet).
+const StrokePicture* strokesOf(const Scene& scene, int layer);
 
 /// Whether a geometry layer is visible.
 bool drawn(const Scene& scene, const GeometryLayer& layer);

@@ -25,6 +25,7 @@ uniform int lens; // index of the lens that it is drawn in, -1: everywhere
 uniform float brushEffect;
 uniform sampler2DArray former, formerColors;
 uniform int peel;
+uniform float rim;  // > 0: the rim around what is drawn, the back of what was made wider, unlit
 uniform int covers; // 1: an opaque surface occludes everything behind it
 
 layout(location = 0) out vec4 outColor;     // linear, premultiplied
@@ -79,6 +80,9 @@ void main() {
 #if LOOKS
     vec3 unit = normalize(normal), turnX = dFdx(unit), turnY = dFdy(unit);
 #endif
+#if !LINES
+    if (rim > 0.0 && (dot(normal, toViewer) > 0.0 || dot(direction, direction) < 1e-20)) discard;
+#endif
     if (!clipKept(world)) discard;
     vec2 action = lensAction(lens, world);
     float alpha = min(opacity * tint.a * action.x, 1.0);
@@ -98,6 +102,7 @@ void main() {
 #else
     color = shade(color, normal, 1.0, world, toViewer);
 #endif
+    if (rim > 0.0) color = plain;
     outColor = vec4(color * alpha, alpha);
     outDistance = vec2(along, brushEffect);
 }

@@ -7,6 +7,9 @@ uniform vec3 worldScale, worldOffset; // world = sheet * scale + offset
 uniform mat4 worldToClip;
 uniform vec2 pixels;     // size of the picture in pixels
 uniform float lineWidth; // pixels
+uniform float rim, pixelEdge; // rim around the line, > 0: that alone, and a pixel; world lengths at depth 1
+uniform vec3 rayOrigin, forward;
+uniform int perspective;
 
 out vec3 world, direction; // direction: along the line
 out float value, side;     // side: -1 .. 1 across the line
@@ -24,5 +27,12 @@ void main() {
     value = second ? scalars.y : scalars.x;
     tint = vec4(-1.0, -1.0, -1.0, 1.0);
     gl_Position = second ? clipB : clipA;
-    gl_Position.xy += vec2(-along.y, along.x) * side * lineWidth / pixels * gl_Position.w;
+    float width = lineWidth;
+    if (rim > 0.0) { // behind the line by half its width
+        width += 2.0 * rim / pixelEdge;
+        vec3 away = perspective == 1 ? normalize(world - rayOrigin) : forward;
+        world += away * (0.5 * width * pixelEdge * max(gl_Position.w, 0.0));
+        gl_Position = worldToClip * vec4(world, 1.0);
+    }
+    gl_Position.xy += vec2(-along.y, along.x) * side * width / pixels * gl_Position.w;
 }

@@ -6,6 +6,7 @@ layout(location = 3) in vec4 ownTint;
 
 uniform vec3 worldScale, worldOffset; // world = sheet * scale + offset
 uniform mat4 worldToClip;
+uniform float rim; // > 0: the rim around the mesh; world length at depth 1
 
 out vec3 world, direction; // direction: the normal, not normalised
 out float value, side;
@@ -18,4 +19,8 @@ void main() {
     side = 0.0;
     tint = ownTint;
     gl_Position = worldToClip * vec4(world, 1.0);
+    if (rim > 0.0 && dot(direction, direction) > 0.0) {
+        world += normalize(direction) * (rim * max(gl_Position.w, 0.0));
+        gl_Position = worldToClip * vec4(world, 1.0);
+    }
 }

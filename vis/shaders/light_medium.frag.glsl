@@ -62,7 +62,7 @@ void main() {
             if (LAYER_STYLE(i) == STYLE_COMPOSITE) {
                 vec4 c = colorAt(i, p, s.xy);
                 c.rgb = colorBy(i, p, c.rgb);
-                vec2 lens = lensAction(LAYER_LENS(i), world);
+                vec2 lens = lensAction(LAYER_LENS(i), world, doi);
                 float factor = kept * focusOpacity(doi, LAYER_BRUSHED(i));
                 float own = -log(1.0 - min(c.a * factor * lens.x, kThickest)) * layerMap[i].z * REFERENCE_LENGTHS;
                 sum += is ? vec4(focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i)), 1.0) * (own / 8.0) : vec4(0.0);
@@ -81,7 +81,7 @@ void main() {
     for (int i = 0; i < LAYERS; ++i) {
         if (LAYER_STYLE(i) != STYLE_ISO) continue;
         float away = abs(mean[i] - layerMap[i].z) / max(length(slope[i]), 1e-20);
-        vec2 lens = lensAction(LAYER_LENS(i), center);
+        vec2 lens = lensAction(LAYER_LENS(i), center, middle);
         float alpha = min(layerMap[i].w * focusOpacity(middle, LAYER_BRUSHED(i)) * lens.x, kThickest);
         float dense = -log(1.0 - alpha) * max(0.0, 1.0 - away / longest) / longest;
         bool is = points[i] > 7.5 && clipKept(center);

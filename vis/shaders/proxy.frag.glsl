@@ -47,7 +47,7 @@ void main() {
         vec4 c = transfer(i, s.x * layerMap[i].x + layerMap[i].y);
         c.rgb = colorBy(i, p, c.rgb);
         float doi = degreeOfInterest(p);
-        vec2 lens = lensAction(LAYER_LENS(i), world);
+        vec2 lens = lensAction(LAYER_LENS(i), world, doi);
         c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
         float alpha = present(s) ? correctedOpacity(c.a * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, lengths * layerMap[i].z) : 0.0;
         if (LAYER_SHADED(i) == 1) {

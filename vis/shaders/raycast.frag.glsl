@@ -134,7 +134,7 @@ int march() {
             vec3 seen = worldAt(at);
             for (int i = 0; i < LAYERS; ++i) {
                 Reading s = readAt(LAYER_FIELD(i), LAYER_LOOKUP(i) == LOOKUP_SLAB ? p + 0.5 * ray.cellsPerSample : p);
-                vec2 lens = lensAction(LAYER_LENS(i), seen);
+                vec2 lens = lensAction(LAYER_LENS(i), seen, LENS_SELECTS == 1 ? degreeOfInterest(p) : 0.0);
                 bool is = present(s);
                 here[i] = s.xy;
                 float x = s.x * layerMap[i].x + layerMap[i].y;

@@ -1,5 +1,6 @@
 // The final picture: background or paper, edges of the box behind, the ray caster's colour, edges in front; encoded to
-// sRGB at the end. Features are compiled in, since software GL would execute all of them for every pixel: BLUR, LINES,
+// sRGB at the end. Features are compiled in, since software GL would execute all of them for every pixel: BLUR,
+// DEPTH_MASK, LINES,
 // WHOLE (each pixel has one of its own in the source: reading one texel instead of mixing four saves software GL 5 ns a
 // pixel), TONE, PAPER, GROUND (0: output opacity and straight colour instead of blending with the ground), each 0 or 1.
 #include "lib/layers/color.glsl"
@@ -26,11 +27,21 @@ uniform int toneCurve;
 uniform vec2 tone;             // gain, white
 #endif
 
+#if BLUR || DEPTH_MASK
+uniform sampler2D seen;   // distance and degree of interest
+#endif
 #if BLUR
 #include "formulas/context_blur.glsl"
-uniform sampler2D seen;   // distance and degree of interest
 uniform float blurRadius; // pixels
 uniform int blurTaps;     // kBlurTaps; a uniform, so that the loop is not unrolled
+#endif
+
+#if DEPTH_MASK
+#include "formulas/depth_mask.glsl"
+uniform vec2 depthSpan;    // near, per distance
+uniform float depthRadius; // pixels
+uniform vec2 depthMask;    // strength, 1: lightens too
+uniform int depthTaps;     // kDepthTaps; a uniform, so that the loop is not unrolled
 #endif
 
 out vec4 outColor;
@@ -62,6 +73,24 @@ vec4 picture(vec2 pixel) {
     return own;
 }
 
+#if DEPTH_MASK
+float depthAt(vec2 pixel) {
+    return pixelDepth(textureLod(seen, place(pixel), 0.0).x, depthSpan);
+}
+
+// Mean depth around a pixel less its own, itself a mean over the pixels that touch it: the edges of surfaces are
+// jagged in the depths.
+float depthDifference(vec2 pixel) {
+    float sum = 0.0, weight = 0.0, own = 0.0;
+    for (int i = 0; i < depthTaps; ++i) {
+        sum += depthTapWeight(i) * depthAt(pixel + depthTap(i) * depthRadius);
+        weight += depthTapWeight(i);
+    }
+    for (int i = 0; i < 9; ++i) own += depthAt(pixel + vec2(float(i % 3 - 1), float(i / 3 - 1))) / 9.0;
+    return sum / weight - own;
+}
+#endif
+
 #if LINES
 // Coverage of the pixel by lines first .. last - 1.
 float lines(int first, int last) {
@@ -77,6 +106,9 @@ float lines(int first, int last) {
 
 void main() {
     vec4 volume = picture(gl_FragCoord.xy);
+#if DEPTH_MASK
+    volume = maskedByDepth(volume, depthDifference(gl_FragCoord.xy), depthMask.x, depthMask.y);
+#endif
 #if TONE
     volume.rgb = toneMap(volume.rgb / max(volume.a, 1e-6), toneCurve, tone.x, tone.y) * volume.a;
 #endif

@@ -34,7 +34,24 @@ const glm::vec4& entry(const std::array<glm::vec4, kColors>& table, double share
     return table[std::size_t(share * double(kColors - 1) + 0.5)];
 }
 
+/// The normal in the box of a gradient in space and time: a gradient grows as its axis is drawn shorter.
+glm::vec4 normalOf(glm::vec4 gradient, const CloudStyle& style, glm::dvec3 size) {
+    const double along = style.fourth.hi - style.fourth.lo;
+    glm::dvec4 out(gradient);
+    if (style.fourthChannel >= 0) out.w = -1;
+    const glm::dvec4 half = firstFour(style.half);
+    for (int axis = 0; axis < 4; ++axis)
+        out[axis] = half[axis] > 0 ? out[axis] * (axis < 3 ? size[axis] : along) / (2 * half[axis]) : 0;
+    const double length = glm::length(out);
+    return length > 0 ? glm::vec4(out / length) : glm::vec4(0);
+}
+
 } // namespace
+
+double litBy(const Light4& light, glm::dvec4 turned) {
+    if (light.towards == glm::dvec4(0) || turned == glm::dvec4(0)) return 1;
+    return light.ambient + (1 - light.ambient) * std::abs(glm::dot(turned, light.towards));
+}
 
 std::vector<CloudPoint> makeCloud(const volume::Samples4& samples, const CloudStyle& style) {
     const auto colors = tableOf(style.transfer);
@@ -51,13 +68,19 @@ std::vector<CloudPoint> makeCloud(const volume::Samples4& samples, const CloudSt
     for (std::size_t i = 0; i < samples.count(); ++i) {
         const float* own = &samples.values[i * channels];
         const double along = style.fourthChannel < 0 ? double(samples.times[i]) : double(own[style.fourthChannel]);
-        if (std::isnan(own[0]) || std::isnan(along)) continue;
+        const auto lacks = [&](const CloudAxis& axis) { return std::isnan(own[axis.channel]); };
+        if (std::isnan(own[0]) || std::isnan(along) || std::ranges::any_of(style.further, lacks)) continue;
         const glm::dvec3 physical(samples.positions[i]);
         const double fourth = shareOf(style.fourth, along);
         const glm::dvec3 inBox =
             glm::clamp((style.axes.toSheet(physical) - style.bounds.lo) / size, 0.0, 1.0) * 2.0 - 1.0;
         CloudPoint point;
-        point.position = glm::vec4(glm::dvec4(inBox, fourth * 2 - 1) * style.half);
+        point.position = glm::vec4(glm::dvec4(inBox, fourth * 2 - 1) * firstFour(style.half));
+        for (std::size_t a = 0; a < style.further.size(); ++a) {
+            const double share = shareOf(style.further[a].range, double(own[style.further[a].channel]));
+            point.further[int(a)] = float((share * 2 - 1) * style.half[4 + a]);
+        }
+        if (!samples.gradients.empty()) point.normal = normalOf(samples.gradients[i], style, size);
         point.color = entry(colors, shareOf(style.range, double(own[0])));
         if (style.fourthColors) point.color = glm::vec4(glm::vec3(entry(fourthColors, fourth)), point.color.a);
         double opacity = double(point.color.a);
@@ -80,12 +103,14 @@ std::vector<CloudPoint> makeCloud(const volume::Samples4& samples, const CloudSt
     return points;
 }
 
-std::optional<std::size_t> nearestPoint(std::span<const CloudPoint> points, const glm::dmat4& rotation,
+std::optional<std::size_t> nearestPoint(std::span<const CloudPoint> points, const RotationN& rotation,
                                         const Projection4& projection, glm::dvec2 at, double reach) {
     std::optional<std::size_t> best;
     double least = 0;
+    const glm::dmat4 first = rotation.firstAxes(), further = rotation.furtherAxes();
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const Projected4 seen = project(projection, 1, rotation * glm::dvec4(points[i].position));
+        const Projected4 seen =
+            project(projection, 1, first * glm::dvec4(points[i].position) + further * glm::dvec4(points[i].further));
         const glm::dvec2 away = seen.at - at;
         const double distance = glm::dot(away, away);
         if (distance > reach * reach) continue;

@@ -262,6 +262,9 @@ void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) c
     own.set("opacity", layer.style.opacity);
     own.set("lens", each.lens);
     own.set("lineWidth", layer.style.lineWidth);
+    const double edge = pixelAtDepthOne(job.scene.camera, job.size);
+    own.set("rim", float(double(layer.style.rim) * edge));
+    own.set("pixelEdge", float(edge));
     own.set("cutByBox", int(layer.style.cutByBox));
     own.set("brushEffect", float(int(layer.brushes)));
     // Layers share program variants, so the uniforms of looks are set for each.

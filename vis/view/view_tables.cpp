@@ -47,11 +47,14 @@ Scene tablesScene(const Scene& scene, const volume::DatasetInfo& info) {
     Scene used = scene;
     used.camera = {};
     used.cursor = glm::dvec3(0);
+    for (Lens& lens : used.lenses) lens.enabled = activeAt(lens, scene.time);
     used.time = 0; // covered by the frames in the key
     used.geometry.clear();
+    used.strokes.clear();
     used.clips.clear();
     used.lighting = {};
     used.tone = {};
+    used.depthMask = {};
     used.background = used.boxColor = glm::vec3(0);
     used.paper.reset();
     used.showGround = used.showBox = false;

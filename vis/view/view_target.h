@@ -3,6 +3,7 @@
 #include "vis/demand/picture_contrast.h"
 #include "vis/packet/packet_renderer.h"
 #include "vis/processor/processor_picture.h"
+#include "vis/raycast/stroke_uniforms.h"
 #include "vis/view/pace.h"
 #include "vis/view/picture.h"
 #include "vis/view/view_demand.h"
@@ -73,6 +74,7 @@ public:
     Pace glPace; ///< of rays cast by OpenGL
     ViewDemand demand;
     ViewTables tables;
+    StrokeTexture strokes;
     ViewGeometry geometry;
     ViewLight light;
     ViewHidden hidden;

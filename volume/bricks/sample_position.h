@@ -21,6 +21,8 @@ public:
         : grid_(grid), first_(grid.levelBegin(brick, level)), end_(first_ + grid.brickSamples(brick, level)),
           now_(first_), level_(level) {}
     glm::dvec3 at() const { return samplePosition(grid_, now_, level_); }
+    /// Storage index of the level.
+    glm::ivec3 index() const { return now_; }
     void next() {
         if (++now_.x < end_.x) return;
         now_.x = first_.x;

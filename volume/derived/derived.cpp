@@ -35,6 +35,8 @@ public:
         parameter.unit = derived_.unit;
         parameter.components = componentsOf(derived_.recipe);
         parameter.parts = partsOf(derived_.recipe, info_);
+        parameter.categorical = kindOf(derived_.recipe).categorical;
+        if (parameter.categorical) parameter.labels = {{0, "no piece"}};
         info_.parameters.push_back(parameter);
         info_.parameters.back().ranges =
             known.empty() ? scan(parameter.components == 3 ? 4 : 1, progress) : std::move(known);
@@ -101,9 +103,14 @@ public:
     }
 
 private:
-    /// Ranges of the channels: exact for coordinates, else of a coarse level.
+    /// Ranges of the channels: exact for coordinates, from 0 on for an uncertainty, else of a coarse level.
     std::vector<Range> scan(int channels, const Progress& progress) const {
         if (std::holds_alternative<TimeRecipe>(derived_.recipe)) return {{info_.times.front(), info_.times.back()}};
+        if (std::holds_alternative<PiecesRecipe>(derived_.recipe)) return {{0, double(std::max(1, bricks_.pieces()))}};
+        if (const auto* uncertainty = std::get_if<UncertaintyRecipe>(&derived_.recipe)) {
+            const double bound = uncertainty->bound.value_or(0);
+            return {{0, bound > 0 ? bound : 1}};
+        }
         const BrickGrid& bricks = grid();
         const int level = bricks.levelWithin(kRangeSamples / double(info_.times.size()));
         std::vector<Range> coarse = scanLevel(channels, level, level > 0 ? progress.part(0, 0.3) : progress);

@@ -9,6 +9,7 @@
 #include "volume/derived/input_time.h"
 #include "volume/derived/other_source.h"
 #include "volume/derived/stencil.h"
+#include "volume/pieces/piece_labels.h"
 
 #include <algorithm>
 #include <array>
@@ -96,6 +97,8 @@ struct DerivedBricks::Impl {
             times_.emplace_back(stored_, channel, difference->reference(), now_);
             if (difference->from == OtherTime::Other) toOwnUnit_ = otherConversion(source_->info(), channel).value();
         }
+        if (const auto* of = std::get_if<PiecesRecipe>(&recipe_))
+            pieces_ = std::make_shared<const PieceLabels>(stored_, piecesQuery(*of, source_->info(), source_->grid()));
     }
 
     /// The key of a channel of the source at a brick.
@@ -308,6 +311,19 @@ struct DerivedBricks::Impl {
         return {std::move(out)};
     }
 
+    Bricks make(const PiecesRecipe&, BrickKey key) const {
+        if (now_) key.time = now_->nearest();
+        return {pieces_->brick(key)};
+    }
+
+    Bricks make(const UncertaintyRecipe& recipe, const BrickKey& key) const {
+        BrickSamples out = input(channelOf(recipe.channel), key);
+        out.rest.clear();
+        for (std::size_t i = 0; i < out.values.size(); ++i)
+            if (out.isPresent(i)) recipe.bound ? set(out, i, *recipe.bound) : setAbsent(out, i);
+        return {std::move(out)};
+    }
+
     Bricks make(const PositionRecipe&, const BrickKey& key) const {
         Bricks out(3, empty(key));
         SamplePositions position(source_->grid(), key.index, key.level);
@@ -359,6 +375,7 @@ struct DerivedBricks::Impl {
     std::vector<Formula> formulas_; ///< of an expression: one, or one for each component
     UnitConversion toOwnUnit_;      ///< of the other data of a difference
     std::vector<InputTime> times_;  ///< of the difference
+    std::shared_ptr<const PieceLabels> pieces_;
     mutable LoadOnce<BrickKey, Bricks, BrickKeyHash> results_, means_;
 };
 
@@ -366,13 +383,19 @@ DerivedBricks::DerivedBricks(std::shared_ptr<const BrickSource> source, DerivedR
     : impl_(std::make_unique<Impl>(std::move(source), std::move(recipe), std::nullopt)) {}
 
 DerivedBricks::DerivedBricks(const DerivedBricks& stored, const TimePair& now)
-    : impl_(std::make_unique<Impl>(stored.impl_->stored_, stored.impl_->recipe_, now)) {}
+    : impl_(std::make_unique<Impl>(stored.impl_->stored_, stored.impl_->recipe_, now)) {
+    impl_->pieces_ = stored.impl_->pieces_; // with what they found
+}
 
 const std::shared_ptr<const BrickSource>& DerivedBricks::sourceNow() const {
     return impl_->sourceNow_;
 }
 
 DerivedBricks::~DerivedBricks() = default;
+
+int DerivedBricks::pieces() const {
+    return impl_->pieces_ ? impl_->pieces_->graph()->tracks : 0;
+}
 
 std::shared_ptr<const DerivedBricks::Bricks> DerivedBricks::get(BrickKey key) const {
     key.channel = 0;

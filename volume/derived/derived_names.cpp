@@ -142,7 +142,16 @@ Parts partsOfLabel(const Parameter& label) {
 
 } // namespace
 
+PiecesQuery piecesQuery(const PiecesRecipe& recipe, const DatasetInfo& info, const BrickGrid& grid) {
+    return {.channel = *info.findChannel(recipe.channel),
+            .value = recipe.value,
+            .side = recipe.side,
+            .leastVolume = recipe.leastVolume,
+            .level = piecesLevel(grid, info.times.size())};
+}
+
 Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info) {
+    if (kindOf(recipe).categorical) return {};
     const std::vector<Channel> channels = info.channels();
     Parts parts;
     for (const std::string& name : std::visit(Inputs{info}, recipe))
@@ -187,6 +196,7 @@ std::vector<std::string> derivedProblems(const std::vector<DerivedParameter>& pa
         Parameter parameter;
         parameter.name = each.name;
         parameter.components = componentsOf(each.recipe);
+        parameter.categorical = kindOf(each.recipe).categorical;
         info.parameters.push_back(std::move(parameter));
     }
     return problems;

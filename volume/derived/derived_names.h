@@ -27,6 +27,9 @@ int componentsOf(const DerivedRecipe& recipe);
 /// The parts of a derived parameter: those of its inputs. If their labels differ, the first one is used.
 Parts partsOf(const DerivedRecipe& recipe, const DatasetInfo& info);
 
+/// What a label of pieces is found by; the channel is there.
+PiecesQuery piecesQuery(const PiecesRecipe& recipe, const DatasetInfo& info, const BrickGrid& grid);
+
 /// Whether the parameter between two stored times is something else than that of both times mixed: where its formula
 /// is, and where one of its inputs is (`computed`, by channel).
 bool isComputedBetween(const DerivedRecipe& recipe, const DatasetInfo& info, const std::function<bool(int)>& computed);

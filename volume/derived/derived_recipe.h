@@ -2,7 +2,9 @@
 
 #include "volume/base/describe.h"
 #include "volume/derived/other_time.h"
+#include "volume/pieces/find_pieces.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -13,7 +15,7 @@
 namespace tessera::volume {
 
 /// The unit that a derived parameter has at first.
-enum class DerivedUnit { OfInput, InputPerLength, Length, Time };
+enum class DerivedUnit { OfInput, InputPerLength, Length, Time, None };
 
 /// What is said of a way to compute parameters.
 struct DerivedKind {
@@ -23,6 +25,7 @@ struct DerivedKind {
     std::string_view prefix; ///< of the name at first, before that of its input
     int components = 1;      ///< 3: a vector, with magnitude
     DerivedUnit unit = DerivedUnit::OfInput;
+    bool categorical = false; ///< a label: whole numbers of regions, never mixed
     /// Whether the parameter between two stored times is that of both times mixed, where its inputs are.
     bool linear = true;
 };
@@ -195,8 +198,55 @@ struct DifferenceRecipe {
     TimeReference reference() const { return {from, time}; }
 };
 
-using DerivedRecipe = std::variant<ExpressionRecipe, MagnitudeRecipe, GradientRecipe, DivergenceRecipe, VorticityRecipe,
-                                   DeviationRecipe, SmoothRecipe, PositionRecipe, TimeRecipe, DifferenceRecipe>;
+/// The number of the piece that a sample belongs to (volume/pieces/find_pieces.h), 0 in none: a label. Between stored
+/// times that of the nearer one.
+struct PiecesRecipe {
+    static constexpr std::string_view kType = "pieces";
+    static constexpr DerivedKind kKind{.title = "Pieces",
+                                       .doc = "The number of the connected piece above or below a value that a sample "
+                                              "belongs to, the same over time; 0 in none: a label.",
+                                       .words = "connected components blobs track label regions",
+                                       .prefix = "pieces of ",
+                                       .unit = DerivedUnit::None,
+                                       .categorical = true};
+    std::string channel;
+    double value = 0;
+    PieceSide side = PieceSide::Above;
+    double leastVolume = 0;
+    bool operator==(const PiecesRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel, kDerivedFrom);
+        visit(self.value, FieldInfo{"value", "Value that samples of pieces reach, in the unit of the parameter"});
+        visit(self.side, FieldInfo{.key = "side",
+                                   .doc = "Pieces of what is at least the value (above), or at most (below)",
+                                   .names = kPieceSideNames});
+        visit(self.leastVolume,
+              FieldInfo{.key = "leastVolume",
+                        .doc = "Volume that a piece has when it is largest, in cubes of the unit of lengths; smaller "
+                               "ones are left out",
+                        .range = Range{0, 1e30}});
+    }
+};
+
+/// How far a stored sample may be from the one that was packed: the same wherever the channel is present.
+struct UncertaintyRecipe {
+    static constexpr std::string_view kType = "uncertainty";
+    static constexpr DerivedKind kKind{.title = "Uncertainty of packing",
+                                       .doc = "How far a sample may be from the one that was packed: the bound that "
+                                              "the archive keeps, or the largest error measured when it was packed.",
+                                       .words = "error bound accuracy precision archive",
+                                       .prefix = "uncertainty "};
+    std::string channel;
+    /// In the unit of the channel: from where the data are opened, which alone knows it. Nothing: not known, and absent
+    /// everywhere.
+    std::optional<double> bound = {};
+    bool operator==(const UncertaintyRecipe&) const = default;
+    static void describe(auto& self, auto&& visit) { visit(self.channel, kDerivedFrom); }
+};
+
+using DerivedRecipe =
+    std::variant<ExpressionRecipe, MagnitudeRecipe, GradientRecipe, DivergenceRecipe, VorticityRecipe, DeviationRecipe,
+                 SmoothRecipe, PositionRecipe, TimeRecipe, DifferenceRecipe, PiecesRecipe, UncertaintyRecipe>;
 
 inline constexpr std::size_t kDerivedKinds = std::variant_size_v<DerivedRecipe>;
 

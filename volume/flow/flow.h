@@ -1,14 +1,16 @@
 #pragma once
 
 #include "volume/base/load_once.h"
+#include "volume/flow/runge_kutta.h"
 #include "volume/reconstruct/sample_grid.h"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-/// Streamlines and pathlines of a vector field.
+/// Vector fields between their samples, and streamlines.
 namespace tessera::volume {
 
 /// The interpolated value as in probe.h, using only the part of the nearest sample; empty where absent.
@@ -33,15 +35,16 @@ using VectorField = std::function<std::optional<glm::dvec3>(glm::dvec3 position)
 class VectorSeries {
 public:
     VectorSeries(const BrickSource& source, int parameter, int level);
-    /// Empty before the first and after the last time, and where either neighbour has no vector.
+    /// Empty before the first and after the last time, and where either neighbour has no vector. A single time is that
+    /// of a steady flow: always.
     std::optional<glm::dvec3> at(glm::dvec3 position, double time) const;
+    /// All of it at a stored time.
+    std::shared_ptr<const VectorGrid> frame(std::size_t time) const { return frames_.get(time); }
 
 private:
     std::vector<double> times_;
     mutable LoadOnce<std::size_t, VectorGrid, std::hash<std::size_t>> frames_;
 };
-
-using ChangingField = std::function<std::optional<glm::dvec3>(glm::dvec3 position, double time)>;
 
 struct StreamlineSettings {
     glm::dvec3 cell{1}; ///< steps and errors are measured in these lengths
@@ -56,31 +59,13 @@ struct StreamlineSettings {
 };
 
 /// The streamline through a point, from its upstream to its downstream end; the point is one of its vertices. Ends
-/// where the field does, to 1/256 of a cell. Empty if the vector at the point is absent or too small.
-///
-/// J. R. Dormand, P. J. Prince: A family of embedded Runge-Kutta formulae, J. Comp. Appl. Math. 6, 1980: fifth order,
-/// the step adapted to the difference from the fourth.
+/// where the field does, to 1/256 of a cell, and where it rests. Empty if the vector at the point is absent or too
+/// small. Steps are those of flowStep().
 std::vector<glm::dvec3> streamline(const VectorField& field, glm::dvec3 seed, const StreamlineSettings& settings);
 
 /// Streamlines of all seeds, in order; the result does not depend on the number of threads. `field` is called from
 /// several threads. Throws Cancelled.
 std::vector<std::vector<glm::dvec3>> streamlines(const VectorField& field, std::span<const glm::dvec3> seeds,
                                                  const StreamlineSettings& settings, const Progress& progress = {});
-
-/// The path of a particle: vertices in order of time.
-struct Pathline {
-    std::vector<glm::dvec3> places;
-    std::vector<double> times;
-};
-
-/// The path of a particle that is at `seed` at a time, from where it enters the field (or `begin`) to where it leaves
-/// it (or `end`). Integrator and end criteria are those of streamline(). The unit of the field is lengths per time.
-Pathline pathline(const ChangingField& field, glm::dvec3 seed, double time, double begin, double end,
-                  const StreamlineSettings& settings);
-
-/// Pathlines of all seeds, as streamlines().
-std::vector<Pathline> pathlines(const ChangingField& field, std::span<const glm::dvec3> seeds, double time,
-                                double begin, double end, const StreamlineSettings& settings,
-                                const Progress& progress = {});
 
 } // namespace tessera::volume

@@ -1,11 +1,13 @@
 #include "volume/flow/flow_channels.h"
 
+#include "volume/base/unit_conversion.h"
 #include "volume/base/unit_product.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <sstream>
 
 namespace tessera::volume {
 
@@ -39,6 +41,27 @@ std::optional<std::array<int, 3>> velocityChannels(const DatasetInfo& info, cons
     return found([](const Parameter& parameter) {
         return parameter.unit.empty() && std::ranges::find(kNames, lower(parameter.name)) != kNames.end();
     });
+}
+
+FlowUnits flowUnits(const DatasetInfo& info, const Parameter& vector) {
+    if (info.lengthUnit.empty() || info.timeUnit.empty() || vector.unit.empty()) return {};
+    const auto conversion = unitConversion(vector.unit, info.speedUnit());
+    return conversion ? FlowUnits{conversion->factor, true} : FlowUnits{};
+}
+
+std::string flowUnitsText(const DatasetInfo& info, const Parameter& vector) {
+    const FlowUnits units = flowUnits(info, vector);
+    std::ostringstream text;
+    const std::string time = info.timeUnit.empty() ? "time" : info.timeUnit;
+    if (units.stated) {
+        text << "1 " << vector.unit << " = " << units.perTime << ' ' << info.lengthUnit << " per " << time;
+        return text.str();
+    }
+    const std::string unit = vector.unit.empty() ? "no unit" : "the unit " + vector.unit;
+    text << vector.name << " has " << unit << ", lengths have " << (info.lengthUnit.empty() ? "none" : info.lengthUnit)
+         << ", times " << (info.timeUnit.empty() ? "none" : info.timeUnit) << ": a vector of 1 is taken as 1 "
+         << info.lengthFactor() << " per " << time;
+    return text.str();
 }
 
 std::optional<int> densityChannel(const DatasetInfo& info) {

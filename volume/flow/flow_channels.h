@@ -14,6 +14,17 @@ namespace tessera::volume {
 /// length per time), else one named U, u, v, vel or velocity. Nothing where there is none.
 std::optional<std::array<int, 3>> velocityChannels(const DatasetInfo& info, const std::string& name = {});
 
+/// How far a vector moves what it carries.
+struct FlowUnits {
+    double perTime = 1;  ///< lengths of the data in one unit of its times, by a vector of 1
+    bool stated = false; ///< false: units of lengths, times and the vector do not say it, so that 1 is assumed
+};
+/// Of a vector parameter of a data set: 1000 for m/s, mm and s.
+FlowUnits flowUnits(const DatasetInfo& info, const Parameter& vector);
+
+/// The same in words: "1 m/s = 1000 mm per s"; where it is assumed, why.
+std::string flowUnitsText(const DatasetInfo& info, const Parameter& vector);
+
 /// Channel of the density: a scalar named rho, density or Density, in kg/m3 where it has a unit.
 std::optional<int> densityChannel(const DatasetInfo& info);
 

@@ -2,7 +2,9 @@
 
 #include "volume/mesh/crossed_edges.h"
 
-#include <memory>
+#include <array>
+#include <glm/vec3.hpp>
+#include <vector>
 
 /// Marching cubes and marching tetrahedra: from crossed edges to triangles; see isosurface.h.
 namespace tessera::volume {
@@ -19,5 +21,8 @@ struct CellTriangles {
 int slabCount(const SampleGrid& grid);
 CellTriangles cubeTriangles(const SampleGrid& grid, const CrossedEdges& edges, float value, int slab);
 CellTriangles tetrahedronTriangles(const CrossedEdges& edges, int slab);
+
+/// The tetrahedra of BCC that are repeated from each sample of an odd slice: storage steps from it to their corners.
+std::vector<std::array<glm::ivec3, 4>> bccTetrahedra();
 
 } // namespace tessera::volume

@@ -92,6 +92,16 @@ std::array<TetrahedronCase, 16> makeCases() {
 
 } // namespace
 
+std::vector<std::array<glm::ivec3, 4>> bccTetrahedra() {
+    std::vector<std::array<glm::ivec3, 4>> out;
+    for (const Octahedron& octahedron : makeOctahedra())
+        for (const Tetrahedron& t : octahedron.parts) {
+            std::array<glm::ivec3, 4>& own = out.emplace_back();
+            for (std::size_t i = 0; i < 4; ++i) own[i] = octahedron.points[std::size_t(t.points[i])];
+        }
+    return out;
+}
+
 CellTriangles tetrahedronTriangles(const CrossedEdges& edges, int slab) {
     static const std::array<Octahedron, 3> octahedra = makeOctahedra();
     static const std::array<TetrahedronCase, 16> cases = makeCases();

@@ -1,61 +1,13 @@
 #include "volume/mesh/mesh_file.h"
 
-#include "volume/system/atomic_file.h"
+#include "volume/mesh/mesh_writer.h"
 
-#include <bit>
-#include <charconv>
 #include <cstdio>
-#include <cstring>
-#include <functional>
 #include <glm/geometric.hpp>
 
 namespace tessera::volume {
 
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "the formats below are little-endian");
-
-/// Buffers small writes.
-class Writer {
-public:
-    Writer(const std::string& path, const Progress& progress) : file_(path), progress_(progress) {}
-
-    void text(std::string_view piece) { buffer_ += piece; }
-    template <class T> void raw(const T& value) {
-        char bytes[sizeof(T)];
-        std::memcpy(bytes, &value, sizeof(T));
-        buffer_.append(bytes, sizeof(T));
-    }
-    void vector(const glm::vec3& v) {
-        for (int i = 0; i < 3; ++i) raw(v[i]);
-    }
-    void number(auto value) {
-        char digits[32];
-        buffer_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
-    }
-    /// Calls `one(i)` for each of `count` items, flushing when the buffer is full.
-    void each(std::size_t count, const std::function<void(std::size_t)>& one) {
-        for (std::size_t i = 0; i < count; ++i) {
-            one(i);
-            if (buffer_.size() < std::size_t(1) << 20) continue;
-            flush();
-            progress_.advance(double(i) / double(count));
-        }
-    }
-    void commit() {
-        flush();
-        file_.commit();
-    }
-
-private:
-    void flush() {
-        file_.write(buffer_);
-        buffer_.clear();
-    }
-    AtomicFile file_;
-    const Progress& progress_;
-    std::string buffer_;
-};
 
 /// A name that is valid in text formats: letters, digits and _.
 std::string word(const std::string& name) {
@@ -74,13 +26,13 @@ bool isFar(const SurfaceMesh& mesh) {
     return mesh.origin != glm::dvec3(0);
 }
 /// A position in 32 bits, or with an origin in 64.
-void writePlace(Writer& out, const SurfaceMesh& mesh, std::size_t vertex) {
+void writePlace(MeshWriter& out, const SurfaceMesh& mesh, std::size_t vertex) {
     if (!isFar(mesh)) return out.vector(mesh.positions[vertex]);
     const glm::dvec3 place = placeOf(mesh, vertex);
     for (int c = 0; c < 3; ++c) out.raw(place[c]);
 }
 
-void writePly(Writer& out, const SurfaceMesh& mesh, const std::string& scalarName) {
+void writePly(MeshWriter& out, const SurfaceMesh& mesh, const std::string& scalarName) {
     const std::string property = isFar(mesh) ? "\nproperty double " : "\nproperty float ";
     out.text("ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.positions.size()) +
              property + "x" + property + "y" + property + "z\n");
@@ -99,7 +51,7 @@ void writePly(Writer& out, const SurfaceMesh& mesh, const std::string& scalarNam
     });
 }
 
-void writeStl(Writer& out, const SurfaceMesh& mesh) {
+void writeStl(MeshWriter& out, const SurfaceMesh& mesh) {
     std::string header = "binary STL";
     if (const std::string shift = meshShift(mesh, ".stl"); !shift.empty()) header += ", " + shift;
     header.resize(80, ' ');
@@ -118,7 +70,7 @@ void writeStl(Writer& out, const SurfaceMesh& mesh) {
     });
 }
 
-void writeObj(Writer& out, const SurfaceMesh& mesh) {
+void writeObj(MeshWriter& out, const SurfaceMesh& mesh) {
     const auto line = [&](std::string_view key, const auto& v) {
         out.text(key);
         for (int i = 0; i < 3; ++i) {
@@ -144,7 +96,7 @@ void writeObj(Writer& out, const SurfaceMesh& mesh) {
     });
 }
 
-void writeVtp(Writer& out, const SurfaceMesh& mesh, const std::string& scalarName) {
+void writeVtp(MeshWriter& out, const SurfaceMesh& mesh, const std::string& scalarName) {
     const std::uint64_t points = mesh.positions.size(), triangles = mesh.triangles.size();
     std::uint64_t offset = 0;
     const auto array = [&](const std::string& type, const std::string& name, int components, std::uint64_t bytes) {
@@ -205,7 +157,7 @@ void writeMesh(const SurfaceMesh& mesh, const std::string& path, const std::stri
     if (mesh.triangles.size() >= 0xffffffffu && ends(".stl")) throw Error("too many triangles for STL", path);
     if (!ends(".ply") && !ends(".stl") && !ends(".obj") && !ends(".vtp"))
         throw Error("meshes are written as .ply, .stl, .obj or .vtp", path);
-    Writer out(path, progress);
+    MeshWriter out(path, progress);
     if (ends(".ply")) writePly(out, mesh, scalarName);
     if (ends(".stl")) writeStl(out, mesh);
     if (ends(".obj")) writeObj(out, mesh);

@@ -1,6 +1,8 @@
 #include "volume/synthetic/models.h"
 
 #include "volume/base/error.h"
+#include "volume/synthetic/branching.h"
+#include "volume/synthetic/bubbles.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
@@ -29,7 +31,9 @@ constexpr Model kModels[] = {{"fuel-cell", makeFuelCell},
                              {"planted", makePlanted},
                              {"marschner-lobb", atOnce<makeMarschnerLobb>},
                              {"casting", atOnce<makeCasting>},
-                             {"membrane", atOnce<makeMembrane>}};
+                             {"membrane", atOnce<makeMembrane>},
+                             {"bubbles", atOnce<makeBubbles>},
+                             {"branching-pulse", atOnce<makeBranching>}};
 
 } // namespace
 

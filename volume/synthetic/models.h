@@ -10,7 +10,7 @@
 namespace tessera::volume {
 
 /// The data sets the program can compute itself: "fuel-cell", the same with "planted" events,
-/// "marschner-lobb", "casting" and "membrane".
+/// "marschner-lobb", "casting", "membrane", "bubbles" and "branching-pulse".
 std::vector<std::string> modelNames();
 
 /// A model as a Dataset on a CC grid, ranges known. `settings` may give nx, ny, nz, times and what the model's

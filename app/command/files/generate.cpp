@@ -5,6 +5,8 @@
 #include "volume/base/byte_text.h"
 #include "volume/base/terminal.h"
 #include "volume/export/export.h"
+#include "volume/synthetic/branching.h"
+#include "volume/synthetic/bubbles.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
@@ -77,12 +79,17 @@ void listSettings(const std::string& model) {
     const volume::MarschnerLobbSettings signal;
     const volume::CastingSettings casting;
     const volume::MembraneSettings membrane;
+    const volume::BubblesSettings bubbles;
     if (model == "marschner-lobb")
         volume::MarschnerLobbSettings::describe(signal, PrintSetting());
     else if (model == "casting")
         volume::CastingSettings::describe(casting, PrintSetting());
+    else if (model == "branching-pulse")
+        volume::BranchingSettings::describe(volume::BranchingSettings(), PrintSetting());
     else if (model == "membrane")
         volume::MembraneSettings::describe(membrane, PrintSetting());
+    else if (model == "bubbles")
+        volume::BubblesSettings::describe(bubbles, PrintSetting());
     else
         volume::FuelCellSettings::describe(cell, PrintSetting());
 }
@@ -119,9 +126,11 @@ void addGenerateCommand(CLI::App& app) {
     CLI::App* command = app.add_subcommand("generate", "Compute a built-in data set and write it");
     const auto request = std::make_shared<GenerateRequest>();
     command
-        ->add_option("MODEL", request->model,
-                     "fuel-cell, planted (the fuel cell with added events of known place), marschner-lobb, casting "
-                     "(a CT scan) or membrane (layers of known integrals, with uneven spacing)")
+        ->add_option(
+            "MODEL", request->model,
+            "fuel-cell, planted (the fuel cell with added events of known place), marschner-lobb, casting "
+            "(a CT scan), membrane (layers of known integrals, with uneven spacing), bubbles (which rise, merge "
+            "and split at known times) or branching-pulse (a pulse that moves through a pipe and parts into two)")
         ->required()
         ->check(CLI::IsMember(volume::modelNames()));
     CLI::Option* output =

@@ -10,6 +10,8 @@
 #include "volume/base/terminal.h"
 #include "volume/export/time_files.h"
 #include "volume/flow/flow_channels.h"
+#include "volume/four/isosurface4.h"
+#include "volume/four/tetra_file.h"
 #include "volume/mesh/mesh_file.h"
 
 #include <CLI/CLI.hpp>
@@ -29,7 +31,7 @@ struct MeshOptions {
     std::string channel, colorBy;
     std::optional<double> iso, time;
     int level = 0;
-    bool bcc = false, allTimes = false;
+    bool bcc = false, allTimes = false, four = false;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel, FieldInfo{"channel", "Parameter whose surface is extracted (default: the only one)"});
         visit(self.iso, FieldInfo{"iso", "Value on the surface, in the parameter's unit"});
@@ -38,6 +40,8 @@ struct MeshOptions {
               FieldInfo{"allTimes",
                         "A file for every time, OUT_0000.vtp and so on, with .vtp also OUT.pvd; processes of "
                         "mpirun or srun share the times"});
+        visit(self.four, FieldInfo{"four", "The surface over x, y, z and time as one mesh of tetrahedra, OUT.vtu, with "
+                                           "the time as an array of its points"});
         visit(self.colorBy, FieldInfo{"colorBy", "Parameter whose values are stored at the vertices"});
         visit(self.level,
               FieldInfo{.key = "level", .doc = "Level of detail: 0 is full resolution", .range = Range{0, 16}});
@@ -60,6 +64,16 @@ DataRef dataOf(const MeshRequest& request, const Progress& progress) {
 }
 
 void check(const MeshRequest& request) {
+    if (request.mesh.four) {
+        if (!request.output.ends_with(volume::kTetraEnding))
+            throw Error("surfaces in space and time are written as .vtu", request.output);
+        if (request.mesh.time || request.mesh.allTimes)
+            throw Error("with --four the surface is one over all times", {},
+                        request.mesh.time ? "--time" : "--all-times");
+        if (!request.mesh.colorBy.empty())
+            throw Error("a surface in space and time has its time at its points", {}, "--color-by");
+        return requireFolderOf(request.output);
+    }
     if (std::ranges::none_of(volume::kMeshEndings, [&](auto ending) { return request.output.ends_with(ending); }))
         throw Error("meshes are written as .ply, .stl, .obj or .vtp", request.output);
     requireFolderOf(request.output);
@@ -91,7 +105,7 @@ void settle(MeshRequest& request, const volume::BrickSource& source) {
     throw Error("the surface is empty: values run from " + formatNumber(range.lo) + " to " + formatNumber(range.hi) +
                     (info.times.size() > 1 ? " over all times" : "") +
                     (within ? std::string(", but no cell whose corners are all present reaches this value ") +
-                                  (request.mesh.allTimes ? "at any time" : "at this time")
+                                  (request.mesh.allTimes || request.mesh.four ? "at any time" : "at this time")
                             : ""),
                 "--iso", formatNumber(*request.mesh.iso));
 }
@@ -143,6 +157,19 @@ void writeAllTimes(const MeshRequest& request, const DataRef& data, const volume
     sayShare(done.own, files.size(), "surfaces", started);
 }
 
+/// The surface in space and time.
+void writeFour(const MeshRequest& request, const volume::BrickSource& source, const Progress& progress) {
+    const volume::DatasetInfo& info = source.info();
+    if (info.times.size() < 2)
+        throw Error("a surface in space and time needs several times; there is one", request.inputs[0], "--four");
+    const volume::TetraMesh mesh = volume::extractIsosurface4(
+        source, *info.findChannel(request.mesh.channel), *request.mesh.iso, request.mesh.level, progress.part(0, 0.8));
+    if (mesh.tetrahedra.empty()) throwEmpty(request, info);
+    volume::writeTetraMesh(mesh, request.output, info.timeName, progress.part(0.8, 1));
+    say("%s: %zu vertices, %zu tetrahedra over x, y, z and %s\n", request.output.c_str(), mesh.points.size(),
+        mesh.tetrahedra.size(), info.timeName.c_str());
+}
+
 void run(MeshRequest request) {
     check(request);
     const Progress progress = terminalProgress("mesh");
@@ -158,6 +185,7 @@ void run(MeshRequest request) {
         return extractLayer(source, layer, volume::timesAround(info.times, time), mesh.level, part);
     };
     const Progress rest = progress.part(0.3, 1);
+    if (mesh.four) return writeFour(request, *source, rest);
     if (!mesh.allTimes) {
         const auto surface = surfaceAt(mesh.time.value_or(info.times.front()), rest.part(0, 0.7));
         if (surface->mesh.triangles.empty()) throwEmpty(request, info);
@@ -172,7 +200,8 @@ void run(MeshRequest request) {
 
 void addMeshCommand(CLI::App& app) {
     CLI::App* command =
-        app.add_subcommand("mesh", "Write an iso-surface as triangles: .ply, .stl, .obj or .vtp by the ending");
+        app.add_subcommand("mesh", "Write an iso-surface as triangles: .ply, .stl, .obj or .vtp by the ending; with "
+                                   "--four as tetrahedra in space and time: .vtu");
     const auto request = std::make_shared<MeshRequest>();
     command->add_option("IN", request->inputs, "Archive, data files that belong together, or a built-in model")
         ->required();

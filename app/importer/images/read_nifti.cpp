@@ -274,7 +274,7 @@ std::string samplesBeside(const std::string& header) {
         packed = ".gz";
     }
     const bool big = stem.ends_with(".HDR");
-    stem.resize(stem.size() - std::min<std::size_t>(stem.size(), 4));
+    stem.erase(stem.size() - std::min<std::size_t>(stem.size(), 4));
     for (const std::string& ending : {packed, packed.empty() ? std::string(".gz") : std::string()}) {
         const std::string name = stem + (big ? ".IMG" : ".img") + ending;
         if (fs::exists(path.parent_path() / name)) return name;

@@ -8,11 +8,12 @@
 
 #include <glm/vec2.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 /// The saved state of views of many parameters and dimensions at once: parallel coordinates, clouds of three
-/// parameters, slices through four dimensions, and what is worth seeing.
+/// parameters, slices through four dimensions, what is worth seeing, and pieces over time.
 namespace tessera::app {
 
 /// An axis for each parameter, side by side, with the density of all samples between neighbours.
@@ -147,5 +148,38 @@ struct WorthSeeingView {
     }
 };
 DrawView<WorthSeeingView> drawWorthSeeingView;
+
+/// What makes the pieces of the graph.
+enum class PiecesOf { Above, Below, Selected };
+inline constexpr std::string_view kPiecesOfNames[] = {"above", "below", "selected"};
+
+/// Connected pieces over time: how they are born, merge, split and die.
+struct PiecesView {
+    static constexpr std::string_view kType = "pieces";
+    std::string channel; ///< "" = the channel of the first layer
+    PiecesOf of = PiecesOf::Above;
+    std::optional<double> value; ///< none: the middle of the parameter's range
+    double leastVolume = 0;
+    bool events = true;
+    bool operator==(const PiecesView&) const = default;
+    static void describe(auto& self, auto&& visit) {
+        visit(self.channel,
+              FieldInfo{.key = "channel", .doc = "Parameter whose pieces are followed", .refersTo = "channel"});
+        visit(self.of, FieldInfo{.key = "of",
+                                 .doc = "Pieces of what is at least the value, at most, or selected by the brushes",
+                                 .names = kPiecesOfNames});
+        visit(self.value, FieldInfo{.key = "value",
+                                    .doc = "Value that samples of pieces reach; none: the middle of the parameter's "
+                                           "range",
+                                    .applies = self.of != PiecesOf::Selected});
+        visit(self.leastVolume,
+              FieldInfo{.key = "leastVolume",
+                        .doc = "Volume that a piece has when it is largest, in cubes of the unit of lengths; smaller "
+                               "ones are left out",
+                        .range = Range{0, 1e30}});
+        visit(self.events, FieldInfo{"events", "Mark births, deaths, merges and splits"});
+    }
+};
+DrawView<PiecesView> drawPiecesView;
 
 } // namespace tessera::app

@@ -3,6 +3,7 @@
 #include "app/session/views/contour_settings.h"
 #include "app/session/views/section_settings.h"
 #include "app/session/views/view_kind.h"
+#include "vis/scene/strokes.h"
 #include "volume/base/data_units.h"
 #include "volume/base/describe.h"
 #include "volume/field/space_axis.h"
@@ -169,18 +170,39 @@ struct CurvesView {
 };
 DrawView<CurvesView> drawCurvesView;
 
-/// Parameters (rows) on parallel planes (columns).
+/// What the rows or the columns of a matrix of slices differ in.
+enum class MatrixAxis { Parameters, Directions, Positions, Times };
+inline constexpr std::string_view kMatrixAxisNames[] = {"parameters", "directions", "positions", "times"};
+
+/// Slices in rows and columns, which differ in what the user chooses: parameters, the three directions (through the
+/// cross-hair), parallel planes, times.
 struct SliceMatrixView {
     static constexpr std::string_view kType = "sliceMatrix";
-    std::vector<std::string> channels;
+    MatrixAxis rows = MatrixAxis::Parameters, columns = MatrixAxis::Positions;
+    std::vector<std::string> channels; ///< the first one where neither rows nor columns are parameters
     volume::SpaceAxis axis = volume::SpaceAxis::Z;
     int planes = 4;
+    int times = 4;
     bool operator==(const SliceMatrixView&) const = default;
+    /// Whether rows or columns differ in this.
+    bool over(MatrixAxis what) const { return rows == what || columns == what; }
     static void describe(auto& self, auto&& visit) {
+        visit(self.rows, FieldInfo{.key = "rows", .doc = "What rows differ in", .names = kMatrixAxisNames});
+        visit(self.columns, FieldInfo{.key = "columns", .doc = "What columns differ in", .names = kMatrixAxisNames});
         visit(self.channels, kShownChannels);
-        visit(self.axis,
-              FieldInfo{.key = "axis", .doc = "Axis perpendicular to the planes", .names = volume::kSpaceAxisNames});
-        visit(self.planes, FieldInfo{.key = "planes", .doc = "Number of planes, evenly spaced", .range = Range{1, 12}});
+        visit(self.axis, FieldInfo{.key = "axis",
+                                   .doc = "Axis perpendicular to the planes",
+                                   .names = volume::kSpaceAxisNames,
+                                   .applies = !self.over(MatrixAxis::Directions)});
+        visit(self.planes, FieldInfo{.key = "planes",
+                                     .doc = "Number of planes, evenly spaced; without them: the plane through the "
+                                            "cross-hair",
+                                     .range = Range{1, 12},
+                                     .applies = self.over(MatrixAxis::Positions)});
+        visit(self.times, FieldInfo{.key = "times",
+                                    .doc = "Number of times, evenly chosen among the stored ones",
+                                    .range = Range{1, 24},
+                                    .applies = self.over(MatrixAxis::Times)});
     }
 };
 DrawView<SliceMatrixView> drawSliceMatrixView;
@@ -191,6 +213,7 @@ struct ObliqueView {
     std::string channel;         ///< "" = the channel of the first layer
     glm::dvec3 normal{-1, 0, 1}; ///< in true proportions, of any length
     ContourSettings lines;
+    vis::Strokes strokes = {};
     bool inSpace = true;
     bool showReadout = true;
     bool operator==(const ObliqueView&) const = default;
@@ -201,6 +224,7 @@ struct ObliqueView {
                                             "plane is seen from the side that it points to",
                                      .range = Range{-1, 1}});
         ContourSettings::describe(self.lines, visit);
+        visit(self.strokes, vis::strokesField());
         visit(self.inSpace, FieldInfo{"inSpace", "Draw the slice in the volume views too"});
         visit(self.showReadout, FieldInfo{"readout", "List the value of every parameter at the cross-hair"});
     }

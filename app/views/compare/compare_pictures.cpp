@@ -60,8 +60,8 @@ std::string whyNot(const DataRef& wanted, const ViewContext& context) {
 bool sameScene(const Session& a, const Session& b) {
     return a.camera == b.camera && a.time == b.time && a.cursor == b.cursor && a.layers == b.layers &&
            a.transfer == b.transfer && a.selection == b.selection && a.render == b.render && a.lighting == b.lighting &&
-           a.clips == b.clips && a.tone == b.tone && a.lenses == b.lenses && a.paper == b.paper &&
-           a.stretch == b.stretch && a.data == b.data && a.appearance == b.appearance;
+           a.clips == b.clips && a.tone == b.tone && a.depthMask == b.depthMask && a.lenses == b.lenses &&
+           a.paper == b.paper && a.stretch == b.stretch && a.data == b.data && a.appearance == b.appearance;
 }
 
 } // namespace

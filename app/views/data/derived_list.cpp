@@ -133,6 +133,11 @@ volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t
     if (const auto* difference = std::get_if<volume::DifferenceRecipe>(&made.recipe))
         base = differenceName(info, *difference);
     made.name = base;
+    if (auto* const pieces = std::get_if<volume::PiecesRecipe>(&made.recipe))
+        if (const auto of = info.findChannel(channel)) {
+            const Range range = info.channelRange(info.channel(*of));
+            pieces->value = 0.5 * (range.lo + range.hi);
+        }
     const auto taken = [&](const std::string& name) {
         return info.findChannel(name).has_value() ||
                std::any_of(info.parameters.begin(), info.parameters.end(),
@@ -142,6 +147,7 @@ volume::DerivedParameter newDerived(const volume::DatasetInfo& info, std::size_t
     made.unit = traits.unit == volume::DerivedUnit::InputPerLength ? perLength(info, unit)
                 : traits.unit == volume::DerivedUnit::Length       ? info.lengthUnit
                 : traits.unit == volume::DerivedUnit::Time         ? info.timeUnit
+                : traits.unit == volume::DerivedUnit::None         ? std::string()
                                                                    : unit;
     return made;
 }

@@ -17,6 +17,9 @@ namespace tessera::app {
 namespace {
 
 constexpr const char* kLayerPayload = "tessera-layer";
+/// By the index of vis::Technique.
+constexpr const char* kLayerKinds[] = {"Volume", "Iso-surface", "Slice", "Flow", "Glyphs"};
+static_assert(std::size(kLayerKinds) == std::variant_size_v<vis::Technique>);
 
 Icon iconOf(const vis::Technique& technique) {
     static constexpr Icon kIcons[] = {icons::kCube, icons::kIso, icons::kSlice, icons::kFlow, icons::kGlyph};
@@ -53,8 +56,7 @@ vis::Layer newLayer(const Session& session, const volume::DatasetInfo& info, std
 } // namespace
 
 const char* kindName(const vis::Technique& technique) {
-    static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow", "Glyphs"};
-    return kNames[technique.index()];
+    return kLayerKinds[technique.index()];
 }
 
 void addLayer(Session& session, const volume::BrickSource& source, std::size_t kind) {
@@ -129,9 +131,8 @@ void drawLayerButtons(ViewContext& context, const volume::DatasetInfo& info, int
     const bool room = layers.size() < kMostLayers;
     if (iconButton(context, "add", icons::kPlus, "Add a layer", room)) ImGui::OpenPopup("add layer");
     if (ImGui::BeginPopup("add layer")) {
-        static constexpr const char* kNames[] = {"Volume", "Iso-surface", "Slice", "Flow", "Glyphs"};
-        for (std::size_t kind = 0; kind < std::size(kNames); ++kind)
-            if (ImGui::MenuItem(kNames[kind], nullptr, false, kind != 3 || !firstVector(info).empty())) {
+        for (std::size_t kind = 0; kind < std::size(kLayerKinds); ++kind)
+            if (ImGui::MenuItem(kLayerKinds[kind], nullptr, false, kind != 3 || !firstVector(info).empty())) {
                 addLayer(context.session, *context.source, kind);
                 selected = static_cast<int>(layers.size()) - 1;
                 followSelectedLayer(context.session);

@@ -1,4 +1,5 @@
 #include "app/data/first_view.h"
+#include "app/edits/error_band.h"
 #include "app/edits/region_surface.h"
 #include "app/edits/show_parameter.h"
 #include "app/pane/view_parts.h"
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <imgui.h>
 #include <imgui_stdlib.h>
+#include <optional>
 
 /// The settings of one layer. Those whose choices are things of the session have widgets of their own.
 namespace tessera::app {
@@ -51,6 +53,19 @@ bool drawRegion(const WidgetContext& widgets, vis::IsoLayer& surface, const volu
     return true;
 }
 
+/// By how much a vector moves particles, above the factor on it.
+void tellSpeed(const vis::FlowLayer& flow, const volume::DatasetInfo& info) {
+    if (!vis::followsParticles(flow.kind)) return;
+    const auto vector = std::ranges::find(info.parameters, flow.vector, &volume::Parameter::name);
+    if (vector == info.parameters.end()) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::TextWrapped("%s", flow.ignoreUnits ? ("A vector of 1 is taken as 1 " + info.lengthFactor() + " per " +
+                                                 (info.timeUnit.empty() ? "time" : info.timeUnit))
+                                                    .c_str()
+                                              : volume::flowUnitsText(info, *vector).c_str());
+    ImGui::PopStyleColor();
+}
+
 /// Whether a layer has a transfer function of its own, which begins as the one that it had.
 void drawOwnFunction(const WidgetContext& widgets, Session& session, vis::Layer& layer) {
     const auto* surface = std::get_if<vis::IsoLayer>(&layer.technique);
@@ -61,6 +76,24 @@ void drawOwnFunction(const WidgetContext& widgets, Session& session, vis::Layer&
     if (!drawBool(widgets, field, own)) return;
     const std::string channel = channelOfFunction(layer.technique);
     setOwnFunction(session, layer.transfer, channel, own, channel + " in " + layerName(layer));
+}
+
+/// A button that shows how far a surface may lie elsewhere, since packed samples are off by up to a bound: that, in the
+/// unit of the parameter, where it is pressed.
+std::optional<double> errorBandButton(const ViewContext& context, const vis::Layer& layer) {
+    const auto* const surface = std::get_if<vis::IsoLayer>(&layer.technique);
+    const auto channel = surface ? context.numbers->info().findChannel(surface->channel) : std::nullopt;
+    if (!channel || isOfErrorBand(layer)) return std::nullopt;
+    const volume::Channel own = context.numbers->info().channel(*channel);
+    const auto bound = packingBound(context.origin, context.numbers->info(), own);
+    if (!bound || !(bound->most > 0)) return std::nullopt;
+    const std::string text = "\u00b1 " + boundWithUnit(bound->most, own.unit);
+    const bool pressed = ImGui::SmallButton(("Show the band of " + text).c_str());
+    if (ImGui::IsItemHovered())
+        tooltip(
+            ("Two translucent surfaces between which this one lies in the data that were packed: " + boundKind(*bound))
+                .c_str());
+    return pressed ? std::optional(bound->most) : std::nullopt;
 }
 
 } // namespace
@@ -77,8 +110,10 @@ void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::
         } else if (field.key == "technique") {
             auto* const surface = std::get_if<vis::IsoLayer>(&layer.technique);
             auto* const glyphs = std::get_if<vis::GlyphLayer>(&layer.technique);
+            const auto* const flow = std::get_if<vis::FlowLayer>(&layer.technique);
             const auto kind = glyphs ? glyphs->kind : vis::GlyphKind();
             drawMembers(member.inside(), place.under(field.key), [&](Value, const FieldInfo& own) {
+                if (flow && own.key == "speed") tellSpeed(*flow, *widgets.info);
                 if (glyphs && own.key == "parts") return drawGlyphParts(widgets, *glyphs);
                 return surface && drawRegion(widgets, *surface, *widgets.info, own);
             });
@@ -92,12 +127,15 @@ void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::
         }
         return true;
     });
+    const std::optional<double> band = errorBandButton(context, layer);
     const std::string now = vis::shownChannel(layer.technique);
     followChannel(layer.name, before, now);
     if (channelOfFunction(layer.technique) != coloured) {
         dropFormerFunction(context.session, layer, functions, context.source->info());
         followSelectedLayer(context.session);
     }
+    if (band) // last, since layers move
+        return showErrorBand(context.session, static_cast<std::size_t>(&layer - context.session.layers.data()), *band);
     if (now == before) return;
     if (auto* const surface = std::get_if<vis::IsoLayer>(&layer.technique); surface && isLabel(*widgets.info, before)) {
         surface->method = vis::IsoLayer().method;

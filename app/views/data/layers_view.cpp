@@ -1,3 +1,4 @@
+#include "app/callouts/callout_list.h"
 #include "app/pane/pane_title.h"
 #include "app/pane/task_tabs.h"
 #include "app/pane/view_parts.h"
@@ -104,6 +105,7 @@ void drawTask(ViewContext& context, const std::string& pane, const WidgetContext
         break;
     case SceneTask::Lenses:
         drawLensList(context, pane, cacheOf<LayersCache>(context, pane).lenses, next);
+        drawCalloutList(context);
         break;
     case SceneTask::Clips:
         if (next.entry) openSection(("clips" + std::to_string(*next.entry)).c_str(), comes);

@@ -93,6 +93,8 @@ void drawPictureSettings(ViewContext& context, const WidgetContext& widgets, con
     if (ImGui::CollapsingHeader("Paper", ImGuiTreeNodeFlags_DefaultOpen)) drawPaper(session, widgets);
     if (ImGui::CollapsingHeader("Tone curve", ImGuiTreeNodeFlags_DefaultOpen))
         drawDescribed(session.tone, widgets.at("/tone"));
+    if (ImGui::CollapsingHeader("Shadows of depth", ImGuiTreeNodeFlags_DefaultOpen))
+        drawDescribed(session.depthMask, widgets.at("/depthMask"));
     if (ImGui::CollapsingHeader("Proportions", ImGuiTreeNodeFlags_DefaultOpen)) drawProportions(session, widgets);
     if (ImGui::CollapsingHeader("Quality", ImGuiTreeNodeFlags_DefaultOpen)) {
         if (canChooseLattice(session.data, *context.numbers, context.origin))

@@ -20,7 +20,7 @@ void drawClipSettings(ViewContext& context, const WidgetContext& widgets);
 /// Lights, shadows, reflection.
 void drawLightSettings(ViewContext& context, const WidgetContext& widgets);
 
-/// Camera, proportions, paper, tone curve and quality; `pane`: the volume view whose camera it is.
+/// Camera, proportions, paper, tone curve, shadows of depth and quality; `pane`: the volume view whose camera it is.
 void drawPictureSettings(ViewContext& context, const WidgetContext& widgets, const std::string& pane);
 
 } // namespace tessera::app

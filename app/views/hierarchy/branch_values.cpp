@@ -15,8 +15,6 @@ std::string brushName(const vis::Brush& brush) {
     return brush.name.empty() ? "brush" : brush.name;
 }
 
-constexpr float kOnWhiteGround = 0.7f; ///< of colours of brushes, which are bright
-
 constexpr Outcome kOutcomes[] = {Outcome::Inside, Outcome::Outside, Outcome::Lacking};
 
 void divide(const Branches& branches, const BranchArea& area, std::size_t levels, std::vector<BranchArea>& out) {
@@ -128,7 +126,7 @@ Plot branchesPlot(const std::vector<vis::Brush>& brushes, const std::vector<Bran
         if (!brushes[i].enabled) continue;
         PlotSeries line{.name = levelName(brushes[i]),
                         .points = {},
-                        .color = brushes[i].color * (dark ? 1 : kOnWhiteGround),
+                        .color = brushes[i].color * (dark ? 1 : kBrightOnWhite),
                         .dots = overTime.size() < 40};
         for (std::size_t t = 0; t < overTime.size(); ++t) {
             const double share =

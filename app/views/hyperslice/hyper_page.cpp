@@ -19,7 +19,6 @@ constexpr int kFewPageCells = 96, kManyPageCells = 384; ///< of a panel on a pag
 constexpr double kCellsOfPoint = 2;                     ///< cells, where the size of the page is given
 constexpr int kRowsOfTable = 64;                        ///< of a panel, along an edge
 constexpr int kProfilePlaces = 257;
-constexpr float kOnWhitePage = 0.7f; ///< of light colours, which vanish on white
 
 PlotAxis pageAxis(const HyperAxis& axis) {
     return {
@@ -59,7 +58,7 @@ void addSections(Plot& plot, const Session& session, const volume::DatasetInfo& 
         PlotOutline& outline = plot.outlines.emplace_back();
         const glm::dvec2 perUnit(across.along.perUnit, up.along.perUnit);
         for (const glm::dvec2& point : section.outline) outline.points.push_back(point * perUnit);
-        outline.color = glm::vec4(section.color * (dark ? 1 : kOnWhitePage), section.faint ? 0.35f : 1.0f);
+        outline.color = glm::vec4(section.color * (dark ? 1 : kBrightOnWhite), section.faint ? 0.35f : 1.0f);
         outline.dashed = section.dashed;
         if (section.middle) outline.dot = *section.middle * perUnit;
     }

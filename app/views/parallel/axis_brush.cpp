@@ -38,29 +38,6 @@ BrushHit hitAxisBrush(const vis::Selection& selection, const ParallelAxis& axis,
     return {};
 }
 
-vis::BrushCombine combineOf(bool add, bool subtract) {
-    return subtract ? vis::BrushCombine::Minus : add ? vis::BrushCombine::Or : vis::BrushCombine::And;
-}
-
-/// Adds the brush of a drag that has gone far enough; unless a modifier keeps them, those of the same parameters make
-/// room.
-void beginDragged(BrushDrag& drag, vis::Selection& selection, vis::Region region) {
-    const ImGuiIO& io = ImGui::GetIO();
-    const std::vector<std::string> channels = vis::regionChannels(region);
-    if (!io.KeyShift && !io.KeyCtrl)
-        std::erase_if(selection.brushes, [&](const vis::Brush& brush) {
-            return vis::regionChannels(brush.region).size() == channels.size() && brushFits(brush, drag.plot);
-        });
-    vis::Brush brush;
-    const PlotChannels& plot = drag.plot;
-    brush.name = newBrushName(selection, plot.y.empty() ? plot.x : plot.x + " \u00d7 " + plot.y);
-    brush.color = newBrushColor(selection);
-    brush.combine = combineOf(io.KeyShift, io.KeyCtrl);
-    brush.region = std::move(region);
-    selection.brushes.push_back(brush);
-    drag.brush = static_cast<int>(selection.brushes.size()) - 1;
-}
-
 void dragAxisBrush(BrushDrag& drag, vis::Selection& selection, const ParallelAxis& axis, float softness) {
     auto* range = std::get_if<vis::RangeRegion>(&selection.brushes[static_cast<std::size_t>(drag.brush)].region);
     if (!range || range->intervals.size() != 1) return;
@@ -89,30 +66,6 @@ void dragAxisBrush(BrushDrag& drag, vis::Selection& selection, const ParallelAxi
     if (was.hi > was.lo) own.soft = was.soft * (own.hi - own.lo) / (was.hi - was.lo);
 }
 
-/// Starts a drag where the button went down, or removes brushes by a right click.
-void beginAxisDrag(BrushDrag& drag, vis::Selection& selection, const PlotChannels& plot, BrushHit hit, double start) {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-        const bool fresh = hit.brush < 0 || io.KeyShift || io.KeyCtrl; // modifiers always start a new brush
-        drag = {.active = true,
-                .made = fresh,
-                .plot = plot,
-                .brush = fresh ? -1 : hit.brush,
-                .edges = fresh ? 0 : hit.edges,
-                .start = {double(io.MousePos.x), start},
-                .original = selection,
-                .asksToClear = false};
-    } else if (ImGui::IsMouseReleased(ImGuiMouseButton_Right) &&
-               ImGui::GetMouseDragDelta(ImGuiMouseButton_Right).x == 0) {
-        if (hit.brush >= 0)
-            selection.brushes.erase(selection.brushes.begin() + hit.brush);
-        else if (selection.brushes.size() == 1)
-            selection.brushes.clear();
-        else
-            drag.asksToClear = !selection.brushes.empty();
-    }
-}
-
 /// Whether the drag goes on here in this frame; Esc takes back what it did.
 bool dragGoesOn(BrushDrag& drag, vis::Selection& selection, const PlotChannels& plot) {
     if (drag.active && keyPressed(key::kEscape)) {
@@ -138,11 +91,11 @@ bool editAxisBrush(BrushDrag& drag, vis::Selection& selection, const ParallelAxi
         const BrushHit hit = hitAxisBrush(selection, axis, mouse.y);
         if (hit.brush >= 0)
             ImGui::SetMouseCursor(hit.edges != 0 ? ImGuiMouseCursor_ResizeNS : ImGuiMouseCursor_ResizeAll);
-        beginAxisDrag(drag, selection, plot, hit, axis.value(mouse.y));
+        pressBrush(drag, selection, plot, hit, {double(mouse.x), axis.value(mouse.y)});
     }
     if (dragGoesOn(drag, selection, plot)) {
         if (drag.brush < 0 && ImGui::IsMouseDragging(ImGuiMouseButton_Left, axisReach()))
-            beginDragged(drag, selection, vis::RangeRegion{{{.channel = axis.channel.name}}});
+            addDragged(drag, selection, vis::RangeRegion{{{.channel = axis.channel.name}}});
         if (drag.brush >= 0) dragAxisBrush(drag, selection, axis, softness);
     }
     return !(selection == before);
@@ -244,14 +197,15 @@ bool editGapBrush(BrushDrag& drag, vis::Selection& selection, const ParallelAxis
     const PlotChannels plot{left.channel.name, right.channel.name};
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     drag.asksToClear = false;
-    if (ImGui::IsItemHovered() && !drag.active) beginAxisDrag(drag, selection, plot, {}, double(mouse.y));
+    if (ImGui::IsItemHovered() && !drag.active)
+        pressBrush(drag, selection, plot, {}, {double(mouse.x), double(mouse.y)});
     if (dragGoesOn(drag, selection, plot)) {
         const ImVec2 start{static_cast<float>(drag.start.x), static_cast<float>(drag.start.y)};
         if (const auto stroke = gapStroke(left, right, start, mouse, axisReach())) {
             vis::LassoRegion region = strokeRegion(left, right, *stroke, softness);
             const bool holds = region.points.size() > 2; // no line rises further than over the whole height
             if (drag.brush < 0 && holds)
-                beginDragged(drag, selection, region);
+                addDragged(drag, selection, region);
             else if (drag.brush >= 0 && holds)
                 selection.brushes[static_cast<std::size_t>(drag.brush)].region = region;
         }

@@ -18,7 +18,6 @@ namespace {
 constexpr glm::dvec2 kNaturalGap{92, 190}; ///< between two axes, points
 constexpr double kPixelsPerPoint = 3;      ///< of the pictures between axes
 constexpr double kThinLine = 0.7, kWideLine = 1.4, kLeastGap = 9;
-constexpr float kOnWhiteGround = 0.7f; ///< of colours of brushes, which are bright
 
 glm::vec4 inked(glm::vec3 color, float alpha = 1) {
     return {color, alpha};
@@ -151,7 +150,7 @@ private:
             const double a = double(own.pixel(band.range.lo)), b = double(own.pixel(band.range.hi));
             const double top = std::clamp(std::min(a, b), double(own.top), double(own.bottom)),
                          bottom = std::clamp(std::max(a, b), double(own.top), double(own.bottom)), half = 0.35 * text_;
-            const glm::vec4 color = inked(form_.dark ? band.color : band.color * kOnWhiteGround);
+            const glm::vec4 color = inked(form_.dark ? band.color : band.color * kBrightOnWhite);
             out_.push_back({Rect{.box = {{double(own.x) - half, top}, {double(own.x) + half, bottom}},
                                  .color = color,
                                  .line = kWideLine * scale_}});

@@ -114,6 +114,21 @@ void GapPictures::draw(ImDrawList& draw, const ParallelPlot& plot) const {
     }
 }
 
+namespace {
+
+/// A number beside an axis, which bright bands run beneath: its ground lets hardly anything through.
+void drawAxisNumber(ImDrawList& draw, ImVec2 rightTop, const std::string& text) {
+    const PlotColors colors = plotColors();
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const ImVec2 from{std::round(rightTop.x - size.x), std::round(rightTop.y)};
+    const float pad = em() * 0.2f;
+    draw.AddRectFilled({from.x - pad, from.y}, {from.x + size.x + pad, from.y + size.y},
+                       (colors.backdrop & ~IM_COL32_A_MASK) | IM_COL32(0, 0, 0, 240), pad);
+    draw.AddText(from, colors.text, text.c_str());
+}
+
+} // namespace
+
 void drawParallelAxes(ImDrawList& draw, const ParallelPlot& plot) {
     const PlotColors colors = plotColors();
     const float tick = em() * 0.3f;
@@ -131,7 +146,7 @@ void drawParallelAxes(ImDrawList& draw, const ParallelPlot& plot) {
             const float top = std::clamp(y - em() / 2, axis.top - em() * 0.3f, axis.bottom - em() * 0.7f);
             if (text.empty() || (std::abs(top - above) < em() && t > 0)) continue;
             above = top;
-            addTextWithBackdrop(draw, {axis.x - tick - em() * 0.2f, top}, {1, 0}, colors.text, text.c_str());
+            drawAxisNumber(draw, {axis.x - tick - em() * 0.2f, top}, text);
         }
         if (!plot.hasMarks()) continue;
         draw.AddLine({axis.x + 0.5f, plot.markTop}, {axis.x + 0.5f, plot.markBottom}, colors.faint);
@@ -176,23 +191,39 @@ void drawAxisHistograms(ImDrawList& draw, const ParallelPlot& plot, const Parall
     }
 }
 
-void drawCursorLine(ImDrawList& draw, const ParallelPlot& plot, const Readout& cursor) {
+namespace {
+
+void drawLineOf(ImDrawList& draw, const ParallelPlot& plot, const std::vector<std::optional<double>>& values,
+                ImU32 ink) {
     const PlotColors colors = plotColors();
     std::vector<ImVec2> line;
     std::vector<bool> there, shown;
-    for (const ParallelAxis& axis : plot.axes) {
-        const auto value = cursor.value(axis.channel.name);
+    for (std::size_t a = 0; a < plot.axes.size() && a < values.size(); ++a) {
+        const ParallelAxis& axis = plot.axes[a];
+        const std::optional<double>& value = values[a];
         there.push_back(value.has_value());
         shown.push_back(value && axis.shows(*value));
         line.push_back({axis.x, value ? axis.pixel(*value) : plot.markAt()});
     }
     for (const bool rim : {true, false})
         for (std::size_t i = 0; i < line.size(); ++i) {
-            const ImU32 color = rim ? colors.backdrop : colors.cursor;
+            const ImU32 color = rim ? colors.backdrop : ink;
             if (i + 1 < line.size() && (there[i] || there[i + 1]) && (plot.hasMarks() || (there[i] && there[i + 1])))
                 draw.AddLine(line[i], line[i + 1], color, rim ? 4.0f : 2.0f);
             if (shown[i]) draw.AddCircleFilled(line[i], em() * (rim ? 0.3f : 0.2f), color, 12);
         }
+}
+
+} // namespace
+
+void drawCursorLine(ImDrawList& draw, const ParallelPlot& plot, const Readout& cursor) {
+    std::vector<std::optional<double>> values;
+    for (const ParallelAxis& axis : plot.axes) values.push_back(cursor.value(axis.channel.name));
+    drawLineOf(draw, plot, values, plotColors().cursor);
+}
+
+void drawSampleLine(ImDrawList& draw, const ParallelPlot& plot, const std::vector<std::optional<double>>& values) {
+    drawLineOf(draw, plot, values, plotColors().text);
 }
 
 std::string axisHoverText(const ParallelPlot& plot, std::size_t axis, float y, const ParallelResult& result,

@@ -77,6 +77,8 @@ void drawAxisHistograms(ImDrawList& draw, const ParallelPlot& plot, const Parall
 
 /// The line of the sample at the cross-hair; where it lacks a parameter it ends at the mark below.
 void drawCursorLine(ImDrawList& draw, const ParallelPlot& plot, const Readout& cursor);
+/// The same of another sample, by its values on the axes.
+void drawSampleLine(ImDrawList& draw, const ParallelPlot& plot, const std::vector<std::optional<double>>& values);
 
 /// What is under the mouse on an axis: its value, the samples in that bin and how many of them are selected, and those
 /// that have no place on it. `selected`: the name of what is selected.

@@ -13,7 +13,6 @@ namespace tessera::app {
 
 namespace {
 
-constexpr std::size_t kCoarseBricks = std::size_t(64) << 20;
 constexpr double kFirstSamples = 3e5; ///< of all axes, in the first picture
 
 bool addsToSelection(const vis::Brush& brush) {
@@ -126,23 +125,13 @@ ParallelResult readDensities(const std::shared_ptr<const volume::BrickSource>& s
 
 std::shared_ptr<const ParallelResult> AsyncDensities::get(ViewContext& context, const std::string& jobKey,
                                                           const ParallelQuery& query) {
-    if (source_ != context.numbers) {
-        source_ = context.numbers;
-        coarse_ = std::make_shared<volume::BrickCache>(context.numbers, kCoarseBricks);
-    }
-    const int first = source_->grid().levelWithin(kFirstSamples / double(std::max<std::size_t>(1, query.axes.size())));
+    const auto& samples = samples_.follow(context);
+    const int first = samples->grid().levelWithin(kFirstSamples / double(std::max<std::size_t>(1, query.axes.size())));
     return query_.get(
-        context, source_,
-        {.key = jobKey,
-         .title = "Parallel coordinates",
-         .quiet = first == 0,
-         .lowPriority = true,
-         .duringEdits = true,
-         .firstLevel = first,
-         .nextLevel = [](int level) { return std::max(0, level - 2); }},
-        query,
-        [coarse = coarse_](const std::shared_ptr<const volume::BrickSource>& source, const ParallelQuery& asked,
-                           int level, const Progress& progress) {
+        context, samples,
+        plotOptions(jobKey, "Parallel coordinates", first, [](int level) { return std::max(0, level - 2); }), query,
+        [coarse = samples_.coarse()](const std::shared_ptr<const volume::BrickSource>& source,
+                                     const ParallelQuery& asked, int level, const Progress& progress) {
             return readDensities(level > 0 ? coarse : source, asked, level, progress);
         },
         [](const ParallelQuery& previous, const ParallelQuery& now) {

@@ -63,8 +63,7 @@ private:
     /// One of 12 axes, 512 bins and 3 colours is 93 MB.
     Answers query_{
         {.answers = 8, .size = kKeptDensities, .sizeOf = [](const ParallelResult& result) { return result.bytes(); }}};
-    std::shared_ptr<const volume::BrickSource> source_;
-    std::shared_ptr<const volume::BrickSource> coarse_; ///< its coarse bricks, kept while a brush is dragged
+    LevelledSamples samples_;
 };
 
 /// The order of axes that their correlations ask for, which takes a moment to find: kept until others are asked for.

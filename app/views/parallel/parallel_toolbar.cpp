@@ -7,6 +7,7 @@
 #include "app/tools/brush_list.h"
 #include "app/ui/number_field.h"
 #include "app/ui/widgets.h"
+#include "app/values/plot.h"
 #include "app/values/selection_text.h"
 #include "app/views/data/derived_list.h"
 
@@ -118,11 +119,10 @@ void drawSelected(ViewContext& context, ToolRow& tools, const ParallelResult* re
 }
 
 std::vector<glm::vec3> focusOf(const Session& session, bool dark) {
-    constexpr float kOnWhitePage = 0.7f; // of colours of brushes, which are bright
     std::vector<glm::vec3> out;
     for (const ImU32 color : brushGroups(session).colors) {
         const ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
-        out.push_back(glm::vec3(c.x, c.y, c.z) * (dark || !darkTheme() ? 1.0f : kOnWhitePage));
+        out.push_back(glm::vec3(c.x, c.y, c.z) * (dark || !darkTheme() ? 1.0f : kBrightOnWhite));
     }
     return out;
 }

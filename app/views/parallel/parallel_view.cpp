@@ -5,6 +5,7 @@
 #include "app/values/selection_text.h"
 #include "app/views/parallel/axis_brush.h"
 #include "app/views/parallel/parallel_toolbar.h"
+#include "app/views/parallel/sample_line.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,8 +26,11 @@ struct ParallelCache : ParallelLayoutCache {
     AsyncStatistics correlations;
     KeptOrder order;
     BrushDrag drag;
-    std::vector<GapPictures> pictures; ///< by time
-    int heldTitle = -1;                ///< axis whose title is dragged
+    std::vector<GapPictures> pictures;       ///< by time
+    int heldTitle = -1;                      ///< axis whose title is dragged
+    AsyncSample sample;                      ///< under the mouse
+    std::vector<std::optional<double>> line; ///< of it, in this frame
+    std::string pane;
 };
 
 /// The axes in the order that their correlations at this time ask for, of all samples.
@@ -172,6 +176,20 @@ void moveTitle(ParallelCache& cache, ParallelCoordinatesView& view, const volume
     cache.heldTitle = -1;
 }
 
+/// Finds the sample whose line is under the mouse, over the item drawn last; what is to be said of it.
+std::string findSample(ViewContext& context, ParallelCache& cache, const ParallelPlot& plot,
+                       const ParallelResult* result, std::size_t left, float x) {
+    constexpr double kNear = 0.03; // of the height of the axes
+    if (!result || cache.drag.active || !ImGui::IsItemHovered() || !context.takesInput()) return {};
+    const auto query =
+        sampleQuery(plot.axes, left, double(x), double(ImGui::GetIO().MousePos.y), result->query.brushed.time);
+    if (!query) return {};
+    const auto found = cache.sample.get(context, cache.pane, *query);
+    if (!found || !*found || (*found)->away > kNear) return {};
+    cache.line = (*found)->values;
+    return "\n" + sampleText(context.session, context.numbers->info(), **found);
+}
+
 /// The mouse on axes and between them.
 void editPlot(ViewContext& context, ParallelCache& cache, ParallelCoordinatesView& view, const ParallelPlot& plot,
               const ParallelResult* result) {
@@ -191,14 +209,19 @@ void editPlot(ViewContext& context, ParallelCache& cache, ParallelCoordinatesVie
         if (ImGui::IsItemHovered() && !cache.drag.active) zoomAxis(view, axis);
         editAxisBrush(cache.drag, session.selection, axis, view.softness);
         clearAfterQuestion(cache.drag, context);
-        if (result) tell(axisHoverText(plot, i, mouse.y, *result, selected));
+        const std::string sample = findSample(context, cache, plot, result, i, axis.x);
+        if (result) tell(axisHoverText(plot, i, mouse.y, *result, selected) + sample);
         if (i + 1 < plot.axes.size() && plot.gap() > 3 * half) {
             const ParallelAxis& next = plot.axes[i + 1];
             ImGui::SetCursorScreenPos({axis.x + half, axis.top});
             mouseArea("gap", {next.x - axis.x - 2 * half, axis.bottom - axis.top}, buttons);
             editGapBrush(cache.drag, session.selection, axis, next, view.softness);
             clearAfterQuestion(cache.drag, context);
-            if (result && ImGui::IsItemHovered()) tell(gapHoverText(plot, i, mouse, *result, selected));
+            const std::string between = findSample(context, cache, plot, result, i, mouse.x);
+            if (result && ImGui::IsItemHovered()) {
+                const std::string through = gapHoverText(plot, i, mouse, *result, selected);
+                tell(through.empty() ? through : through + between);
+            }
         }
         ImGui::PopID();
     }
@@ -217,7 +240,9 @@ void drawPlotOf(ViewContext& context, ParallelCache& cache, ParallelCoordinatesV
     }
     drawParallelAxes(draw, plot);
     if (context.decoration.cursor && view.times.empty()) drawCursorLine(draw, plot, sharedReadout(context));
+    cache.line.clear();
     editPlot(context, cache, view, plot, result.get());
+    if (!cache.line.empty()) drawSampleLine(draw, plot, cache.line);
     const float half = std::min(em() * 0.5f, plot.axes.size() > 1 ? plot.gap() * 0.2f : em());
     for (const ParallelAxis& axis : plot.axes) drawAxisBrushes(draw, context.session.selection, axis, half);
     for (std::size_t i = 0; i + 1 < plot.axes.size(); ++i)
@@ -276,6 +301,7 @@ void drawParallelCoordinatesView(ViewContext& context, const std::string& pane, 
     }
     const volume::DatasetInfo& info = context.numbers->info();
     ParallelCache& cache = cacheOf<ParallelCache>(context, pane);
+    cache.pane = pane;
     std::vector<int> shown = chosenChannels(info, view.channels, kMostAxes);
     if (shown.empty()) {
         drawHint("No parameters to compare", "This data set has only labels.");

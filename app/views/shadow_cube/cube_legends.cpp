@@ -23,7 +23,7 @@ struct FaceBar {
 } // namespace
 
 std::string kindName(WallKind kind) {
-    static constexpr const char* kNames[] = {"slice", "mean", "maximum", "absorption", "shadow"};
+    static constexpr const char* kNames[] = {"slice", "mean", "maximum", "absorption", "shadow", "volume"};
     return kNames[static_cast<std::size_t>(kind)];
 }
 

@@ -63,7 +63,8 @@ void drawReading(ViewContext& context, const CubeFrame& frame, ShadowCubeCache& 
         const auto value = readWall(*shown.source, context.session, *channel, wall, kCubeFaces[hit.face],
                                     frame.physical(hit), shown.time, &drawnSource(context)->info().lattice);
         const volume::Channel known = frame.info.channel(*channel);
-        const bool share = wall.kind == WallKind::XRay || wall.kind == WallKind::Shadow;
+        const bool share =
+            wall.kind == WallKind::XRay || wall.kind == WallKind::Shadow || wall.kind == WallKind::Volume;
         const Range range = frame.info.channelRange(known);
         text =
             (wall.kind == WallKind::Shadow ? "selected"

@@ -50,6 +50,26 @@ double greatestInterest(const volume::BrickSource& source, const Session& sessio
     return most;
 }
 
+/// Keeps the lenses on a face: what is drawn inside of them is drawn as `wall` is.
+void addFaceLenses(vis::Scene& out, const vis::Scene& scene, const vis::Layer& wall, bool opaque) {
+    out.selection = scene.selection; // of which lenses may be
+    for (const vis::Lens& lens : scene.lenses) {
+        if (lens.shape == vis::LensShape::Disc) continue; // it faces the viewer of the cube
+        out.lenses.push_back(lens);
+        for (const vis::Layer& layer : scene.layers) {
+            if (!layer.visible || layer.lens != lens.name) continue;
+            vis::Layer inner = wall;
+            inner.lens = lens.name;
+            inner.transfer = layer.transfer;
+            inner.timeShift = layer.timeShift;
+            const std::string channel = vis::shownChannel(layer.technique);
+            std::visit([&](auto& own) { own.channel = channel; }, inner.technique);
+            if (opaque) out.transfer[inner.transfer.empty() ? channel : inner.transfer].opacity = {{0, 1}, {1, 1}};
+            out.layers.push_back(std::move(inner));
+        }
+    }
+}
+
 } // namespace
 
 glm::dvec3 CubeFace::at(double s, double t, glm::dvec3 half) const {
@@ -105,9 +125,11 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, const 
     const WallKind kind = wall.kind;
     vis::Scene out = scene;
     out.geometry.clear();
+    out.strokes.clear();
     out.clips.clear();
     out.lenses.clear();
     out.tone = {};
+    out.depthMask = {};
     out.lighting.shadows = {};
     out.paper.reset();
     out.showBox = out.showGround = false;
@@ -117,9 +139,12 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, const 
     out.selection = {};
     vis::TransferFunction& function = out.transfer[wall.transfer.empty() ? channel : wall.transfer];
     vis::VolumeLayer layer{.channel = channel};
-    if (kind == WallKind::Mean || kind == WallKind::Maximum) {
+    const bool opaque = kind == WallKind::Mean || kind == WallKind::Maximum;
+    if (opaque) {
         layer.style = kind == WallKind::Mean ? vis::RayStyle::Average : vis::RayStyle::Maximum;
         function.opacity = {{0, 1}, {1, 1}};
+    } else if (kind == WallKind::Volume) {
+        layer.look = wall.look;
     } else {
         layer.style = vis::RayStyle::XRay;
     }
@@ -132,8 +157,13 @@ vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, const 
     }
     out.layers = {{.name = "wall", .technique = layer, .transfer = wall.transfer}};
     if (kind == WallKind::Slice)
-        out.layers[0].technique =
-            vis::SliceLayer{.channel = channel, .orientation = static_cast<vis::SliceOrientation>(face.axis)};
+        out.layers[0].technique = vis::SliceLayer{.channel = channel,
+                                                  .orientation = static_cast<vis::SliceOrientation>(face.axis),
+                                                  .contours = wall.contours};
+    if (wall.lenses && kind != WallKind::Shadow) {
+        out.layers[0].brushes = vis::BrushEffect::None;
+        addFaceLenses(out, scene, vis::Layer(out.layers[0]), opaque);
+    }
     out.camera = {};
     out.camera.projection = vis::Projection::Orthographic;
     glm::vec3 right(0), up(0);
@@ -170,7 +200,7 @@ std::optional<double> readWall(const volume::BrickSource& source, const Session&
         ++count;
         sum += *each.interpolated;
         most = std::max(most, *each.interpolated);
-        if (kind == WallKind::XRay)
+        if (kind == WallKind::XRay || kind == WallKind::Volume)
             through *= 1 - vis::correctedOpacity(vis::evaluate(function, range, *each.interpolated).a, step, 1);
     }
     if (count == 0) return std::nullopt;

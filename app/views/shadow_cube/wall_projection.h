@@ -40,9 +40,9 @@ vis::Camera cubeCamera(const ShadowCubeView& view, vis::Camera camera, glm::dvec
                        glm::dvec2 share = glm::dvec2(1));
 
 /// The scene whose parallel picture, as wide and high as the data along the face's axes, is the face's; colours by the
-/// parameter's transfer function or the wall's own. Means, maxima, absorption and slices are of all samples; the shadow
-/// is the absorption of what is selected (or, without a selection, of what the transfer function shows), in `shadow`
-/// (sRGB).
+/// parameter's transfer function or the wall's own. All but the shadow are of all samples, and may have lenses; the
+/// shadow is the absorption of what is selected (or, without a selection, of what the transfer function shows), in
+/// `shadow` (sRGB).
 vis::Scene wallScene(const vis::Scene& scene, const std::string& channel, const Wall& wall, const CubeFace& face,
                      const vis::WorldFrame& world, glm::vec3 shadow);
 

@@ -1,3 +1,4 @@
+#include "app/callouts/callout_menu.h"
 #include "app/pane/view_parts.h"
 #include "app/planes/plane_export.h"
 #include "app/planes/plane_pane.h"
@@ -56,6 +57,7 @@ void drawTools(ViewContext& context, ObliqueView& view, const Readout& readout, 
         }
     }
     chooseContours(tools, info, view.lines);
+    chooseStrokes(tools, info, view.strokes);
     if (tools.next(checkboxWidth("in 3D"))) {
         ImGui::Checkbox("in 3D", &view.inSpace);
         if (ImGui::IsItemHovered()) tooltip("Draw the slice in the volume views too");
@@ -124,10 +126,14 @@ std::optional<PlaneFrame> drawTiltedSlice(ViewContext& context, PlaneState& stat
     if (!(scale > 0)) return std::nullopt;
     const vis::WorldFrame world = vis::worldFrame(info, session.stretch);
     PlaneFrame frame = planeFrame(slice, world, info.bounds, room.lo, scale);
-    useMouse(context, state, slice, frame, [&] { drawTiltMenu(session, info, view); });
+    useMouse(context, state, slice, frame, [&] {
+        drawTiltMenu(session, info, view);
+        ImGui::Separator();
+        drawPlaneCalloutEntry(context, pane, info.channel(shows.channel).name);
+    });
     slice = tiltedPlane(session, info, view.normal, shows); // the mouse may have moved the cross-hair or tilted it
     frame = planeFrame(slice, world, info.bounds, room.lo, planeScale(slice, room.lo, room.hi, 0));
-    drawPicture(context, state, slice, frame, 2.0 / 3);
+    drawPicture(context, state, slice, frame, 2.0 / 3, pane);
     if (context.decoration.title) drawPlaneTitle(layout, slice, frame.plot);
     if (context.decoration.axes && room.axes) drawPlaneAxes(slice, frame.plot, *room.axes);
     drawOver(context, state, slice, frame, "contours " + pane);
@@ -151,7 +157,7 @@ void drawObliqueView(ViewContext& context, const std::string& pane, ObliqueView&
         return drawHint("No extent", "The data are flat: there is nothing to tilt a plane in.");
     ObliqueCache& cache = cacheOf<ObliqueCache>(context, pane);
     const Readout& readout = sharedReadout(context);
-    const PlaneContent shows{.channel = *channel, .lines = view.lines};
+    const PlaneContent shows{.channel = *channel, .lines = view.lines, .strokes = view.strokes};
     drawTools(context, view, readout, shows);
     const PlanePicture slice = tiltedPlane(context.session, info, view.normal, shows);
     const ImVec2 room{ImGui::GetContentRegionAvail().x, heightAtLeast(em() * 6)};

@@ -1,8 +1,10 @@
 #include "app/pane/view_parts.h"
 #include "app/planes/plane_export.h"
 #include "app/planes/plane_pane.h"
+#include "app/queries/async_query.h"
 #include "app/ui/number_field.h"
 #include "app/ui/widgets.h"
+#include "app/views/slices/slice_matrix.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,37 +15,66 @@ namespace {
 
 constexpr std::size_t kMostRows = 6; ///< where the user has not chosen
 
-struct SliceMatrixCache : ViewCache {
-    std::vector<PlaneState> slices; ///< plane by plane of each parameter
+/// What is asked of each slice: whether it shows a value.
+struct PresenceQuery {
+    struct Slice {
+        int channel = 0;
+        PicturePlane plane;
+        volume::TimePair time;
+        bool operator==(const Slice&) const = default;
+    };
+    std::vector<Slice> slices;
+    bool operator==(const PresenceQuery&) const = default;
 };
 
-/// The longer axis of a slice lies level.
-SliceAxes axesOf(volume::SpaceAxis axis, const vis::WorldFrame& world) {
-    const int normal = static_cast<int>(axis);
-    SliceAxes out{normal == 0 ? 1 : 0, normal == 2 ? 1 : 2, normal};
-    if (world.halfSize[out.up] > world.halfSize[out.right]) std::swap(out.right, out.up);
-    return out;
+struct SliceMatrixCache : ViewCache {
+    std::vector<PlaneState> slices; ///< column by column
+    AsyncQuery<PresenceQuery, std::vector<bool>> presence;
+};
+
+/// Where the cells are, pixels.
+struct MatrixLayout {
+    ImVec2 origin;           ///< of the whole, with names of rows and columns
+    float title = 0;         ///< width of the names of rows
+    float head = 0;          ///< height of the names of columns
+    float gap = 0;           ///< between cells
+    float legend = 0;        ///< width of upright legends, 0 = none
+    ImVec2 cell;             ///< room of a cell
+    std::vector<float> left; ///< of each column, and the end of the last
+};
+
+/// `text` as far as there is room, else the same without its unit, else its number alone.
+std::string nameThatFits(const std::string& text, float room) {
+    const std::string plain = text.substr(0, text.find(" [")),
+                      number = text.substr(std::min(text.rfind("= "), text.size()));
+    const std::string value = number.size() > 2 ? number.substr(2) : plain;
+    const std::string fits = firstThatFits({text, plain, value, value.substr(0, value.find(' '))}, room);
+    return fits.empty() || ImGui::CalcTextSize(fits.c_str()).x > room ? fitText(plain, room) : fits;
 }
 
-/// Position of plane `index` of `count`: the middle of its share of the box as it is drawn.
-double planePosition(const volume::DatasetInfo& info, int axis, int index, int count) {
-    const volume::Box& bounds = info.bounds;
-    return info.lattice.axes.toSpace(axis, bounds.lo[axis] + bounds.size()[axis] * (index + 0.5) / count);
+void chooseOver(ViewContext& context, ToolRow& tools, SliceMatrixView& view, bool rows) {
+    constexpr const char* kWords[] = {"parameters", "directions", "positions", "times"};
+    if (!tools.next(em() * 7)) return;
+    MatrixAxis& own = rows ? view.rows : view.columns;
+    MatrixAxis& other = rows ? view.columns : view.rows;
+    ImGui::SetNextItemWidth(em() * 7);
+    if (ImGui::BeginCombo(rows ? "##rows" : "##columns", kWords[static_cast<int>(own)])) {
+        for (int i = 0; i < 4; ++i) {
+            const auto what = static_cast<MatrixAxis>(i);
+            const bool possible = what != MatrixAxis::Times || context.source->info().times.size() > 1;
+            ImGui::BeginDisabled(!possible);
+            if (ImGui::Selectable(kWords[i], own == what) && own != what) {
+                if (other == what) other = own; // they swap
+                own = what;
+            }
+            ImGui::EndDisabled();
+        }
+        ImGui::EndCombo();
+    }
+    if (ImGui::IsItemHovered()) tooltip(rows ? "What rows differ in" : "What columns differ in");
 }
 
-PlanePicture matrixSlice(const Session& session, const volume::DatasetInfo& info, const SliceMatrixView& view,
-                         const SliceAxes& axes, int channel, int plane) {
-    return axisPlane(session, info, axes, planePosition(info, axes.normal, plane, view.planes),
-                     {.channel = channel, .plain = true});
-}
-
-/// With the unit where there is room for both.
-std::string rowTitle(const volume::Channel& channel, float room) {
-    const std::string whole = titleWithUnit(channel.name, channel.unit);
-    return ImGui::CalcTextSize(whole.c_str()).x <= room ? whole : fitText(channel.name, room);
-}
-
-void chooseAxis(volume::SpaceAxis& axis, const std::string& directions) {
+void chooseAxis(volume::SpaceAxis& axis) {
     ImGui::SetNextItemWidth(em() * 3.4f);
     if (ImGui::BeginCombo("##axis", volume::kSpaceAxisNames[static_cast<std::size_t>(axis)].data())) {
         for (int i = 0; i < 3; ++i)
@@ -51,36 +82,174 @@ void chooseAxis(volume::SpaceAxis& axis, const std::string& directions) {
                 axis = static_cast<volume::SpaceAxis>(i);
         ImGui::EndCombo();
     }
-    if (ImGui::IsItemHovered()) tooltip(("Axis perpendicular to the planes; " + directions).c_str());
+    if (ImGui::IsItemHovered()) tooltip("Axis perpendicular to the planes");
 }
 
-void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown, const SliceAxes& axes) {
+void chooseCount(ToolRow& tools, const char* id, int& count, int most, const char* one, const char* many) {
+    if (!tools.next(em() * 6)) return;
+    ImGui::SetNextItemWidth(em() * 6);
+    slider(id, count, 1, most, count == 1 ? one : many);
+}
+
+void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown) {
     const volume::DatasetInfo& info = context.source->info();
-    const AxisLabels labels = axisLabels(context.session, info);
-    const std::string directions = std::string(labels[static_cast<std::size_t>(axes.right)].name) + " to the right, " +
-                                   labels[static_cast<std::size_t>(axes.up)].name + " up";
     ToolRow tools(context);
     chooseChannels(tools, info, view.channels, shown);
-    if (tools.next(em() * 3.4f)) chooseAxis(view.axis, directions);
-    if (tools.next(em() * 6)) {
-        ImGui::SetNextItemWidth(em() * 6);
-        slider("##planes", view.planes, 1, 12, view.planes == 1 ? "%d plane" : "%d planes");
-    }
-    std::vector<PlanePicture> slices; // with a row for each parameter
-    for (const int channel : shown)
-        for (int plane = 0; plane < view.planes; ++plane)
-            slices.push_back(matrixSlice(context.session, drawnSource(context)->info(), view, axes, channel, plane));
-    exportPlanes(context, tools, "slices", std::move(slices), view.planes, shown);
-    if (tools.fits(ImGui::CalcTextSize(directions.c_str()).x)) drawNote(tools, directions);
+    chooseOver(context, tools, view, true);
+    chooseOver(context, tools, view, false);
+    if (!view.over(MatrixAxis::Directions) && tools.next(em() * 3.4f)) chooseAxis(view.axis);
+    if (view.over(MatrixAxis::Positions)) chooseCount(tools, "##planes", view.planes, 12, "%d plane", "%d planes");
+    if (view.over(MatrixAxis::Times)) chooseCount(tools, "##times", view.times, 24, "%d time", "%d times");
+    SliceMatrix exported = sliceMatrix(context.session, drawnSource(context)->info(), view, shown);
+    const std::string common = commonText(context.session, info, view, exported);
+    std::vector<int> channels = shown;
+    if (!view.over(MatrixAxis::Parameters) && channels.size() > 1) channels.resize(1);
+    exportPlanes(context, tools, "slices", std::move(exported.pictures), std::max(1, exported.columns), channels);
+    if (tools.fits(ImGui::CalcTextSize(common.c_str()).x)) drawNote(tools, common);
 }
 
-/// Where a plane lies, in as many words as its column has room for.
-void drawPlace(ImDrawList& draw, ImVec2 at, const PlanePicture& slice, float width) {
-    const std::string length = slice.place.substr(slice.place.find(" = ") + 3);
-    const std::string text = firstThatFits({slice.place, length, length.substr(0, length.find(' '))}, width);
-    const ImVec2 room = ImGui::CalcTextSize(text.c_str());
-    draw.AddText(at, plotColors().text, text.c_str());
-    tellWhole(at, {at.x + room.x, at.y + room.y}, slice.place, text);
+/// Row by row: whether a slice shows a value; true until that is known.
+std::vector<bool> shownValues(ViewContext& context, SliceMatrixCache& cache, const SliceMatrix& matrix,
+                              const std::string& pane) {
+    PresenceQuery query;
+    for (const PlanePicture& slice : matrix.pictures)
+        query.slices.push_back({slice.shows.channel, slice.plane, slice.time});
+    const auto found = cache.presence.get(
+        context, context.source,
+        {.key = pane + " values", .title = "Values of slices", .quiet = true, .lowPriority = true}, query,
+        [pictures = matrix.pictures](const std::shared_ptr<const volume::BrickSource>& source, const PresenceQuery&,
+                                     int, const Progress& progress) {
+            std::vector<bool> out;
+            const double each = 1 / static_cast<double>(std::max<std::size_t>(1, pictures.size()));
+            for (std::size_t i = 0; i < pictures.size(); ++i)
+                out.push_back(
+                    showsValues(*source, pictures[i],
+                                progress.part(static_cast<double>(i) * each, static_cast<double>(i + 1) * each)));
+            return out;
+        },
+        [](const PresenceQuery&, const PresenceQuery&) { return false; });
+    return found ? *found : std::vector<bool>(matrix.pictures.size(), true);
+}
+
+PlaneFrame cellFrame(const PlanePicture& slice, const vis::WorldFrame& world, const volume::Box& bounds, ImVec2 room) {
+    return planeFrame(slice, world, bounds, {}, planeScale(slice, {}, room, 0));
+}
+
+/// Cells as large as the pane has room for, but not below `least`: then the pane scrolls.
+MatrixLayout layOut(const ViewContext& context, const SliceMatrixView& view, const SliceMatrix& matrix,
+                    const vis::WorldFrame& world, ImVec2 least) {
+    const volume::DatasetInfo& info = context.source->info();
+    const float rows = static_cast<float>(matrix.rows), columns = static_cast<float>(matrix.columns);
+    MatrixLayout out;
+    out.gap = em() * 0.4f;
+    out.title = em() * 1.5f;
+    out.head = em() * 1.3f;
+    const bool below = view.columns == MatrixAxis::Parameters; // legends of columns stand below them
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    if (!below && room.x >= em() * 20)
+        for (const PlanePicture& slice : matrix.pictures)
+            out.legend =
+                std::max({out.legend, em() * 5,
+                          legendColumnWidth(legendOf(context.session, info, slice.shows.channel)) + em() * 0.5f});
+    const float under = below ? legendBarHeight() : 0;
+    out.origin = ImGui::GetCursorScreenPos();
+    const float high = std::max(heightAtLeast(out.head + under + (least.y + out.gap) * rows), 1.0f);
+    const float fits = (room.x - out.title - out.legend) / columns - out.gap;
+    out.cell = {std::max(fits, least.x), (high - out.head - under) / rows - out.gap};
+    float x = out.title;
+    for (int column = 0; column < matrix.columns; ++column) {
+        out.left.push_back(x);
+        float wide = em() * 6.5f; // narrow slices stand close together, but not closer than their titles
+        for (int row = 0; row < matrix.rows; ++row)
+            wide = std::max(wide, cellFrame(matrix.at(row, column), world, info.bounds, out.cell).plot.max.x);
+        x += std::min(out.cell.x, wide) + out.gap;
+    }
+    out.left.push_back(x);
+    return out;
+}
+
+void drawNames(const MatrixLayout& layout, const SliceMatrix& matrix) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    for (int column = 0; column < matrix.columns; ++column) {
+        const auto k = static_cast<std::size_t>(column);
+        const ImVec2 at{std::round(layout.origin.x + layout.left[k]), layout.origin.y};
+        const std::string& whole = matrix.columnNames[k];
+        const std::string text = nameThatFits(whole, layout.left[k + 1] - layout.left[k] - layout.gap);
+        const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+        draw.AddText(at, plotColors().text, text.c_str());
+        tellWhole(at, {at.x + size.x, at.y + size.y}, whole, text);
+    }
+    for (int row = 0; row < matrix.rows; ++row) {
+        const float y = layout.origin.y + layout.head + (layout.cell.y + layout.gap) * static_cast<float>(row);
+        const std::string text =
+            nameThatFits(matrix.rowNames[static_cast<std::size_t>(row)], layout.cell.y + layout.gap);
+        addTextUpwards(draw, {layout.origin.x + em() * 0.6f, y + layout.cell.y / 2}, plotColors().text, text.c_str());
+    }
+}
+
+/// One for each parameter: at the right of rows, below columns.
+void drawLegends(const ViewContext& context, const SliceMatrixView& view, const MatrixLayout& layout,
+                 const SliceMatrix& matrix) {
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const auto legend = [&](int row, int column) {
+        return legendOf(context.session, context.source->info(), matrix.at(row, column).shows.channel);
+    };
+    if (view.columns == MatrixAxis::Parameters) {
+        const float y = layout.origin.y + layout.head + (layout.cell.y + layout.gap) * static_cast<float>(matrix.rows);
+        for (int column = 0; column < matrix.columns; ++column) {
+            const auto k = static_cast<std::size_t>(column);
+            LegendEntry entry = legend(0, column);
+            entry.title = entry.unit = ""; // the head of the column has them
+            drawLegendBar(draw, {layout.origin.x + layout.left[k], y},
+                          std::min(layout.left[k + 1] - layout.left[k] - layout.gap, em() * 14), entry);
+        }
+        return;
+    }
+    if (!(layout.legend > 0)) return;
+    const int bars = view.rows == MatrixAxis::Parameters ? matrix.rows : 1;
+    for (int row = 0; row < bars; ++row)
+        drawLegendColumn(
+            draw,
+            {layout.origin.x + layout.left.back(),
+             std::round(layout.origin.y + layout.head + (layout.cell.y + layout.gap) * static_cast<float>(row))},
+            layout.cell.y, legend(row, 0));
+}
+
+void drawCell(ViewContext& context, PlaneState& state, const PlanePicture& slice, const PlaneFrame& frame, int index,
+              double share, const std::string& pane) {
+    ImGui::PushID(index);
+    useMouse(context, state, slice, frame);
+    if (slice.ownTime && ImGui::IsItemActivated()) {
+        context.session.time = *slice.ownTime;
+        context.session.animation.playing = false;
+    }
+    ImGui::PopID();
+    drawPicture(context, state, slice, frame, share, pane + std::to_string(index));
+    drawOver(context, state, slice, frame, {});
+}
+
+void drawCells(ViewContext& context, SliceMatrixCache& cache, const MatrixLayout& layout, const SliceMatrix& matrix,
+               const vis::WorldFrame& world, const std::string& pane) {
+    cache.slices.resize(matrix.pictures.size());
+    const std::vector<bool> values = shownValues(context, cache, matrix, pane);
+    const ImVec2 lo = ImGui::GetWindowDrawList()->GetClipRectMin(), hi = ImGui::GetWindowDrawList()->GetClipRectMax();
+    for (int column = 0; column < matrix.columns; ++column)
+        for (int row = 0; row < matrix.rows; ++row) {
+            const PlanePicture& slice = matrix.at(row, column);
+            PlaneFrame frame = cellFrame(slice, world, context.source->info().bounds, layout.cell);
+            const ImVec2 size = frame.plot.max;
+            const ImVec2 at{
+                std::round(layout.origin.x + layout.left[static_cast<std::size_t>(column)]),
+                std::round(layout.origin.y + layout.head + (layout.cell.y + layout.gap) * static_cast<float>(row))};
+            frame.plot.min = at, frame.plot.max = {at.x + size.x, at.y + size.y};
+            if (at.x >= hi.x || at.y >= hi.y || frame.plot.max.x <= lo.x || frame.plot.max.y <= lo.y) continue;
+            const int index = column * matrix.rows + row;
+            drawCell(context, cache.slices[static_cast<std::size_t>(index)], slice, frame, index,
+                     1 / static_cast<double>(cache.slices.size()), pane);
+            if (!values[static_cast<std::size_t>(row * matrix.columns + column)])
+                addFittedWithBackdrop(*ImGui::GetWindowDrawList(), {at.x + size.x / 2, at.y + (size.y - em()) / 2},
+                                      {0.5f, 0}, plotColors().faint, "no values", size.x);
+        }
 }
 
 } // namespace
@@ -94,53 +263,31 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     SliceMatrixCache& cache = cacheOf<SliceMatrixCache>(context, pane);
     const std::vector<int> shown = chosenChannels(info, view.channels, kMostRows);
     const vis::WorldFrame world = vis::worldFrame(info, context.session.stretch);
-    const SliceAxes axes = axesOf(view.axis, world);
     view.planes = std::clamp(view.planes, 1, 12);
-    drawToolbar(context, view, shown, axes);
+    view.times = std::clamp(view.times, 1, 24);
+    drawToolbar(context, view, shown);
     drawStretch(context);
     if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
-    if (!(world.halfSize[axes.right] > 0) || !(world.halfSize[axes.up] > 0))
+    const SliceMatrix matrix = sliceMatrix(context.session, info, view, shown);
+    if (matrix.pictures.empty() || !std::ranges::all_of(matrix.pictures, [](const PlanePicture& slice) {
+            return slice.size.x > 0 && slice.size.y > 0;
+        }))
         return drawHint("No extent", "The data have no extent within these planes.");
 
-    const float title = em() * 1.5f, gap = em() * 0.4f, head = em() * 1.3f;
-    float legend = 0;
-    if (ImGui::GetContentRegionAvail().x >= em() * 20)
-        for (const int channel : shown)
-            legend =
-                std::max({legend, em() * 5, legendColumnWidth(legendOf(context.session, info, channel)) + em() * 0.5f});
-    const ImVec2 origin = ImGui::GetCursorScreenPos();
-    const ImVec2 room{ImGui::GetContentRegionAvail().x,
-                      heightAtLeast(head + (em() * 1.8f + gap) * static_cast<float>(shown.size()))};
-    const float cellX = (room.x - title - legend) / static_cast<float>(view.planes) - gap;
-    const float cellY = (room.y - head) / static_cast<float>(shown.size()) - gap;
-    if (cellX < em()) return drawHint("Not enough room", "Enlarge the pane, or show fewer planes.");
-    ImDrawList& draw = *ImGui::GetWindowDrawList();
-    cache.slices.resize(shown.size() * static_cast<std::size_t>(view.planes));
-    for (int plane = 0; plane < view.planes; ++plane)
-        for (std::size_t row = 0; row < shown.size(); ++row) {
-            const std::size_t index = row * static_cast<std::size_t>(view.planes) + static_cast<std::size_t>(plane);
-            const PlanePicture slice = matrixSlice(context.session, info, view, axes, shown[row], plane);
-            PlaneFrame frame = planeFrame(slice, world, info.bounds, {}, planeScale(slice, {}, {cellX, cellY}, 0));
-            const float wide = frame.plot.max.x, high = frame.plot.max.y;
-            // Narrow slices stand close together, but not closer than their titles.
-            const float pitch = std::min(cellX, std::max(wide, em() * 6.5f)) + gap;
-            const ImVec2 at{std::round(origin.x + title + pitch * static_cast<float>(plane)),
-                            std::round(origin.y + head + (cellY + gap) * static_cast<float>(row))};
-            frame.plot.min = at, frame.plot.max = {at.x + wide, at.y + high};
-            ImGui::PushID(static_cast<int>(index));
-            useMouse(context, cache.slices[index], slice, frame);
-            ImGui::PopID();
-            drawPicture(context, cache.slices[index], slice, frame, 1 / static_cast<double>(cache.slices.size()));
-            drawOver(context, cache.slices[index], slice, frame, {});
-            if (row == 0 && context.decoration.title) drawPlace(draw, {at.x, origin.y}, slice, pitch - gap);
-            if (plane > 0) continue;
-            if (context.decoration.legend && legend > 0)
-                drawLegendColumn(draw, {origin.x + title + pitch * static_cast<float>(view.planes), at.y}, high,
-                                 legendOf(context.session, info, shown[row]));
-            if (context.decoration.title)
-                addTextUpwards(draw, {origin.x + em() * 0.6f, at.y + high / 2}, plotColors().text,
-                               rowTitle(info.channel(shown[row]), high + gap).c_str());
-        }
+    const ImVec2 least{em() * 3, em() * 1.8f};
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    if (room.x < em() * 3.5f) return drawHint("Not enough room", "Enlarge the pane, or show fewer slices.");
+    const float wide = em() * 1.5f + (least.x + em() * 0.4f) * static_cast<float>(matrix.columns);
+    const bool scrolled = wide > room.x && context.takesInput();
+    if (scrolled) {
+        ImGui::SetNextWindowContentSize({wide, 0});
+        ImGui::BeginChild("cells", {0, 0}, false, ImGuiWindowFlags_HorizontalScrollbar);
+    }
+    const MatrixLayout layout = layOut(context, view, matrix, world, {scrolled ? least.x : 1, least.y});
+    drawCells(context, cache, layout, matrix, world, pane);
+    if (context.decoration.title) drawNames(layout, matrix);
+    if (context.decoration.legend) drawLegends(context, view, layout, matrix);
+    if (scrolled) ImGui::EndChild();
 }
 
 } // namespace tessera::app

@@ -1,3 +1,4 @@
+#include "app/callouts/callout_menu.h"
 #include "app/pane/axes3d.h"
 #include "app/pane/view_parts.h"
 #include "app/planes/plane_export.h"
@@ -36,6 +37,7 @@ void drawSlicesTools(ViewContext& context, SlicesView& view, const Readout& read
     ToolRow tools(context);
     choosePlaneChannel(tools, context.source->info(), shows.channel, view.channel);
     chooseContours(tools, context.source->info(), view.lines);
+    chooseStrokes(tools, context.source->info(), view.strokes);
     const volume::DatasetInfo& info = drawnSource(context)->info();
     const ThreeSlices slices = slicesAtCursor(context.session, info, kSlicePlanes, shows);
     exportPlanes(context, tools, "slices", {slices.begin(), slices.end()}, 2, comparedChannels(info));
@@ -132,12 +134,17 @@ void drawSliceAtCursor(ViewContext& context, PlaneState& state, const std::strin
     PlanePicture slice = now();
     PlaneFrame frame = planeFrame(slice, vis::worldFrame(info, context.session.stretch), info.bounds, room.lo, scale);
     ImGui::PushID(static_cast<int>(index));
-    useMouse(context, state, slice, frame, [&] { drawBrushMenu(context); });
+    useMouse(context, state, slice, frame, [&] {
+        drawBrushMenu(context);
+        ImGui::Separator();
+        drawPlaneCalloutEntry(context, std::string(1, "xyz"[slice.axes->normal]),
+                              context.source->info().channel(slice.shows.channel).name);
+    });
     ImGui::PopID();
     slice = now();
     frame.plane = slice.plane;
     if (context.decoration.title) drawSliceTitle(room, slice, info, &frame.plot, layout.axes);
-    drawPicture(context, state, slice, frame, 1.0 / 3); // three pictures share a frame
+    drawPicture(context, state, slice, frame, 1.0 / 3, pane + std::to_string(index)); // three pictures share a frame
     if (context.decoration.axes && layout.axes) drawPlaneAxes(slice, frame.plot, room.axes);
     drawOver(context, state, slice, frame, "contours " + pane + std::to_string(index));
 }
@@ -188,7 +195,7 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     if (!channel) return drawHint("No parameters", "This data set has no parameter to show.");
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
     const Readout& readout = sharedReadout(context);
-    const PlaneContent shows{.channel = *channel, .lines = view.lines};
+    const PlaneContent shows{.channel = *channel, .lines = view.lines, .strokes = view.strokes};
     drawSlicesTools(context, view, readout, shows);
     drawStretch(context);
 

@@ -165,13 +165,11 @@ HistogramLook histogramLook(const ViewContext& context, const HistogramView& vie
             inkOf(focus)};
 }
 
-constexpr float kOnWhite = 0.7f; ///< of colours of brushes, which are bright
-
 /// The same on a page, whose ground may be another than the window's.
 HistogramLook onPage(HistogramLook look, bool dark) {
     const auto [bars, focus] = sampleColors(dark);
     look.all = inkOf(bars);
-    look.focus = look.ownFocus ? look.focus * (dark ? 1 : kOnWhite) : inkOf(focus);
+    look.focus = look.ownFocus ? look.focus * (dark ? 1 : kBrightOnWhite) : inkOf(focus);
     return look;
 }
 
@@ -255,7 +253,7 @@ void drawToolbar(ViewContext& context, HistogramView& view, const volume::Channe
                      Plot plot = histogramPlot(channel, histogram.range, &histogram, onPage(look, form.dark));
                      if (family) plot = familyPlot(channel, *family, log, form.dark);
                      plot.brushed = bands;
-                     for (PlotBand& band : plot.brushed) band.color *= form.dark ? 1 : kOnWhite;
+                     for (PlotBand& band : plot.brushed) band.color *= form.dark ? 1 : kBrightOnWhite;
                      plot.cursorX = at;
                      return plotPage({plot}, 1, form);
                  },

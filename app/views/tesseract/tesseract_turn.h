@@ -1,14 +1,17 @@
 #pragma once
 
 #include "app/session/views/view_state_scenes.h"
-#include "vis/shapes/rotation4.h"
+#include "vis/shapes/rotation_n.h"
 
-/// The turn of the tesseract in its six planes.
+#include <vector>
+
+/// The turn of the tesseract in the planes of its axes.
 namespace tessera::app {
 
-vis::Angles4 anglesOf(const TesseractView& view);
-void setAngles(TesseractView& view, const vis::Angles4& angles);
-/// Turns what is seen: `first` and `second` in radians in two planes of the picture.
-void turn(TesseractView& view, vis::Plane4 a, double first, vis::Plane4 b, double second);
+/// Degrees, in the order of vis::planeIndex.
+std::vector<double> anglesOf(const TesseractView& view, int axes);
+void setAngles(TesseractView& view, const std::vector<double>& angles);
+/// Turns what is seen first.
+void turn(TesseractView& view, int axes, const vis::RotationN& by);
 
 } // namespace tessera::app

@@ -1,12 +1,10 @@
 #pragma once
 
 #include "app/pane/plot.h"
-#include "vis/shapes/rotation4.h"
+#include "app/views/tesseract/tesseract_axes.h"
+#include "vis/shapes/projection4.h"
 #include "vis/transfer/transfer_function.h"
-#include "volume/field/dataset.h"
 
-#include <array>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,31 +15,31 @@ namespace tessera::app {
 /// Where and how the body is seen.
 struct TesseractFrame {
     ImVec2 min, max; ///< pixels of the picture
-    glm::dmat4 rotation{1};
+    vis::RotationN rotation;
     vis::Projection4 projection;
-    glm::dvec4 half{0.5};                 ///< within the unit ball
-    std::array<std::string, 4> axes;      ///< names
-    std::array<std::string, 4> low, high; ///< numbers at their ends, with units
+    int count = 4;                        ///< of axes
+    vis::PointN half{0.5, 0.5, 0.5, 0.5}; ///< within the unit ball
+    std::vector<TesseractAxis> axes;      ///< as many, or none: without names and numbers
     vis::TransferFunction fourth;         ///< colours along the fourth axis
 
-    vis::Projected4 project(glm::dvec4 at) const { return vis::project(projection, 1, rotation * at); }
+    vis::Projected4 project(const vis::PointN& at) const {
+        return vis::project(projection, 1, vis::firstFour(rotation * at));
+    }
     ImVec2 pixel(glm::dvec2 at) const;
 };
 
 /// Blue to orange, legible on dark and on light ground.
 vis::TransferFunction fourthColors();
 
-/// The 32 edges, coloured along the fourth axis, fainter and thinner with distance; nearer ones over farther ones.
+/// The edges, coloured along the fourth axis, fainter and thinner with distance; nearer ones over farther ones.
 void drawWire(ImDrawList& draw, const TesseractFrame& frame);
-/// Lines of the lattice of `cells` cells along each axis.
+/// Lines of the lattice of `cells` cells along each of the first four axes, in the middle of the others.
 void drawLattice4(ImDrawList& draw, const TesseractFrame& frame, int cells);
-/// The cell at a share 0..1 of the fourth axis; returns the corners of its text.
+/// The cell at a share 0..1 of the fourth axis, in the middle of those behind it; returns the corners of its text.
 std::pair<ImVec2, ImVec2> drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share,
                                       const std::string& text);
-/// Fills in the numbers at the ends of the axes; `fourth`: channel along the fourth, nothing for time.
-void numberEnds(TesseractFrame& frame, const volume::DatasetInfo& info, std::optional<int> fourth);
-/// Names of the axes beside four edges of one corner, the numbers at their far ends, and those of the corner; none
-/// where rectangles are taken.
+/// Names of the axes with their units beside the edges of one corner, ticks with numbers along these and at their ends;
+/// none where rectangles are taken.
 void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame, std::vector<std::pair<ImVec2, ImVec2>> taken = {});
 /// What lies towards the eye of the fourth dimension, and is therefore drawn larger: "large: late t, right x".
 std::string nearText(const TesseractFrame& frame);

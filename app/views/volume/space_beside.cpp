@@ -45,6 +45,7 @@ Session sessionInSpace(const Session& session, const volume::DatasetInfo& along,
         });
     });
     inner.lenses.clear();
+    inner.callouts.clear();
     inner.views.clear();
     inner.animation.playing = false;
     return inner;

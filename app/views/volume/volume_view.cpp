@@ -11,20 +11,21 @@
 #include "app/tools/brush_list.h"
 #include "app/tools/camera_controller.h"
 #include "app/tools/lens_edit.h"
-#include "app/tools/lens_list.h"
 #include "app/tools/lens_outline.h"
 #include "app/tools/profile_line.h"
 #include "app/tools/space_handles.h"
-#include "app/ui/keys.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "app/views/volume/callouts_beside.h"
 #include "app/views/volume/ink_on_paper.h"
 #include "app/views/volume/link_control.h"
 #include "app/views/volume/plane_in_space.h"
 #include "app/views/volume/probe_marks.h"
 #include "app/views/volume/space_beside.h"
+#include "app/views/volume/stereo_eyes.h"
 #include "app/views/volume/upper_texts.h"
+#include "app/views/volume/volume_menu.h"
 #include "volume/import/files/upright.h"
 
 #include <algorithm>
@@ -35,8 +36,9 @@ namespace tessera::app {
 namespace {
 
 struct VolumeCache : ViewCache {
-    vis::ViewTargetPtr target;
+    EyePictures eyes;
     AsyncScene scene;
+    CalloutsCache callouts;
     CameraController hand;
     LensDrag lens;
     HandleDrag handles;
@@ -52,113 +54,75 @@ struct SpaceCache : ViewCache {
     int renderers() const override { return renderer ? 1 : 0; }
 };
 
-/// Depth of field, and what is in focus: what lies at `at`, where the menu was opened, or the cross-hair.
-void drawFocusMenu(ViewContext& context, vis::ViewTarget* target, const PictureBox& picture,
-                   const vis::WorldFrame& world, ImVec2 at) {
-    vis::Camera& camera = context.session.camera;
-    bool blurs = camera.aperture > 0;
-    if (ImGui::MenuItem("Depth of field", "", &blurs)) setDepthOfField(camera, blurs);
-    if (ImGui::MenuItem("Focus here", nullptr, false, target != nullptr)) {
-        const auto pick = context.renderer.pick(*target, {at.x - picture.min.x, at.y - picture.min.y});
-        if (pick)
-            focusOn(camera, world.toWorld(pick->position));
-        else
-            context.answers.messages.emplace_back("Nothing is seen there that could be in focus.");
-    }
-    if (ImGui::MenuItem("Focus on the cross-hair")) focusOn(camera, world.toWorld(context.session.cursor));
-}
-
-void drawMenu(ViewContext& context, const char* id, VolumeView& view, vis::ViewTarget* target,
-              const PictureBox& picture, const vis::WorldFrame& world) {
-    if (!ImGui::BeginPopup(id)) return;
-    const ImVec2 at = ImGui::GetMousePosOnOpeningCurrentPopup(); // not known once an item or Esc has closed the menu
-    if (escapePressed()) ImGui::CloseCurrentPopup();
-    vis::Camera& camera = context.session.camera;
-    if (ImGui::MenuItem("Reset view", "R")) resetCamera(camera, world, picture.aspect());
-    static constexpr const char* kKeys[] = {"1", "Shift+1", "Shift+3", "3", "7", "Shift+7", "9"};
-    for (std::size_t i = 0; i < std::size(vis::kStandardViewNames); ++i) {
-        std::string name(vis::kStandardViewNames[i]);
-        name[0] = static_cast<char>(name[0] - 'a' + 'A');
-        if (ImGui::MenuItem(name.c_str(), kKeys[i]))
-            lookAlong(camera, static_cast<vis::StandardView>(i), world, picture.aspect());
-    }
-    ImGui::Separator();
-    bool parallel = camera.projection == vis::Projection::Orthographic;
-    if (ImGui::MenuItem("Parallel projection", "5", &parallel))
-        camera.projection = parallel ? vis::Projection::Orthographic : vis::Projection::Perspective;
-    drawFocusMenu(context, target, picture, world, at);
-    ImGui::Separator();
-    // Positions in a plane of space and time are not positions in space.
-    if (context.source->info().plane || !context.session.data.timeAxis) {
-        drawBrushMenu(context);
-        ImGui::Separator();
-        drawLensMenu(context);
-        ImGui::Separator();
-    }
-    if (context.session.data.timeAxis) ImGui::MenuItem("Data in space", "", &view.inSpace);
-    ImGui::MenuItem("Box", "", &view.showBox);
-    ImGui::MenuItem("Axes", "", &view.showAxes);
-    ImGui::MenuItem("Legends", "", &view.showLegend);
-    ImGui::MenuItem("Legends of drawings", "", &view.drawingLegend, view.showLegend);
-    ImGui::MenuItem("Cross-hair", "", &view.showCursor);
-    ImGui::MenuItem("Box and cross-hair of drawings", "", &view.drawingBox, view.showBox || view.showCursor);
-    ImGui::MenuItem("Direction gizmo", "", &view.showGizmo);
-    ImGui::MenuItem("Scale bar", "", &view.showScaleBar);
-    ImGui::MenuItem("Outlines and handles", "", &view.showLenses);
-    ImGui::MenuItem("Handles of lights", "", &view.showLights, view.showLenses);
-    if (context.runCommand) {
-        ImGui::Separator();
-        if (ImGui::MenuItem("Save picture...", "F12")) context.runCommand("Save picture...");
-    }
-    ImGui::EndPopup();
-}
-
 /// One frame of a picture of the scene in a pane.
 class SpacePicture {
 public:
-    SpacePicture(ViewContext& context, VolumeCache& cache, VolumeView& view, PictureBox picture)
+    SpacePicture(ViewContext& context, VolumeCache& cache, VolumeView& view, PictureBox picture,
+                 const std::string& pane)
         : context_(context), cache_(cache), view_(view), picture_(picture), session_(context.session),
           shown_(context.decoration), info_(context.source->info()), world_(vis::worldFrame(info_, session_.stretch)),
           triad_(triadRadius(picture.size)), triadAt_(triadMiddle(picture.min, picture.max(), cache.triad, triad_)),
           hasTriad_(view.showGizmo && picture.size.x > em() * 13 && picture.size.y > em() * 9),
-          chain_(context, view, picture) {}
+          chain_(context, view, picture), pane_(pane),
+          callouts_(context, cache.callouts, view.showCallouts && view.stereo.kind != vis::StereoKind::SideBySide,
+                    picture, pane) {}
 
-    void draw(const std::string& pane) {
+    void draw() {
         const bool moving = useHands();
         vis::FrameRequest request;
         request.size = {picture_.size.x, picture_.size.y};
         request.moving = (moving || context_.interacting || plays()) && !context_.headless;
         request.wait = context_.headless;
-        if (!cache_.target) cache_.target = context_.renderer.makeTarget();
-        vis::Scene scene = cache_.scene.get(context_, pane, request.moving);
+        vis::Scene scene = cache_.scene.get(context_, pane_, request.moving);
         // In motion a third of the frame time is left to other views.
         const double all = double(scene.render.limits.frameTime) * (request.moving ? 2.0 / 3 : 1);
         request.budgetMs = all / std::max(context_.volumes, 1);
         scene.showBox = view_.showBox && shown_.box && framed();
-        const vis::FrameStatus status = context_.renderer.render(*cache_.target, scene, request);
-        context_.answers.follow(status);
+        const RenderedEyes eyes = renderEyes(context_, cache_.eyes, scene, request, view_.stereo);
 
         const InkOnPaper ink(scene);
+        scene_ = &scene;
         list_ = ImGui::GetWindowDrawList();
-        list_->PushClipRect(picture_.min, max(), true);
-        addPicture(*list_, status.texture, picture_.min, max());
-        const SpaceFrame space = spaceFrame(picture_.min, max(), session_.camera, info_, session_.stretch);
-        drawObjects(space);
-        if (!request.moving) placeCorners(space);
-        const AxisLabels labels = axisLabels(session_, info_);
-        if (const auto chain = chain_.draw(*list_)) taken_.push_back(*chain);
-        drawLegend();
-        if (hasTriad_ && shown_.gizmo) drawTriadAt(labels);
-        if (view_.showScaleBar && shown_.scaleBar && !info_.timeAxis()) drawBar();
-        if (shown_.title) drawTexts();
-        drawCentred(equalText(session_, info_));
-        if (!status.complete && !context_.headless && !request.moving) drawProgress(status);
-        if (view_.showAxes && shown_.axes) drawAxes3d(*list_, space, session_.camera, labels, taken_);
-        list_->PopClipRect();
+        if (view_.stereo.kind != vis::StereoKind::SideBySide) {
+            drawOver(eyes.textures[0], session_.camera, eyes.status, request.moving);
+        } else {
+            const PictureBox whole = picture_;
+            for (const vis::Eye eye : {vis::Eye::Left, vis::Eye::Right}) {
+                picture_ = halfPicture(whole, view_.stereo, eye);
+                taken_.clear();
+                legendLeft_.reset();
+                drawOver(eyes.textures[std::size_t(eye)], vis::eyeCamera(session_.camera, view_.stereo, eye),
+                         eyes.status, request.moving);
+            }
+        }
     }
 
 private:
+    /// A picture and what is drawn over it, as a camera sees it.
+    void drawOver(vis::TextureName texture, const vis::Camera& camera, const vis::FrameStatus& status, bool moving) {
+        list_->PushClipRect(picture_.min, max(), true);
+        addPicture(*list_, texture, picture_.min, max());
+        const SpaceFrame space = spaceFrame(picture_.min, max(), camera, info_, session_.stretch);
+        drawObjects(space);
+        if (!moving) placeCorners(space);
+        const AxisLabels labels = axisLabels(session_, info_);
+        if (const auto chain = chain_.draw(*list_)) taken_.push_back(*chain);
+        drawLegend();
+        if (hasTriad_ && shown_.gizmo && view_.stereo.kind != vis::StereoKind::SideBySide) drawTriadAt(labels);
+        if (view_.showScaleBar && shown_.scaleBar && !info_.timeAxis()) drawBar();
+        if (shown_.title) drawTexts();
+        drawCentred(equalText(session_, info_));
+        if (!status.complete && !context_.headless && !moving) drawProgress(status);
+        callouts_.draw(space, *scene_, moving, taken_);
+        if (view_.showAxes && shown_.axes) drawAxes3d(*list_, space, camera, labels, taken_);
+        list_->PopClipRect();
+    }
+
     ImVec2 max() const { return picture_.max(); }
+    /// The picture that the mouse points into, of the left eye in an anaglyph; null while there is none.
+    vis::ViewTarget* picked() const {
+        return view_.stereo.kind == vis::StereoKind::SideBySide ? nullptr : cache_.eyes.targets[0].get();
+    }
     /// Whether box and cross-hair suit what is shown.
     bool framed() const { return view_.drawingBox || !onlyDrawings(session_); }
     bool showsLegend() const { return view_.showLegend && shown_.legend; }
@@ -168,6 +132,9 @@ private:
     /// Mouse and keys over the picture; true while something moves.
     bool useHands() {
         chain_.take();
+        const SpaceFrame seen = spaceFrame(picture_.min, max(), session_.camera, info_, session_.stretch);
+        const bool inCallout =
+            callouts_.take(seen, !cache_.hand.dragging() && !cache_.lens.active && !cache_.handles.active);
         mouseArea("picture", picture_.size,
                   ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                       ImGuiButtonFlags_MouseButtonRight);
@@ -182,9 +149,9 @@ private:
                               editHandles(cache_.handles, session_, info_, before, free && !forLens, view_.showLights);
         const bool onLens = lenses && editLenses(cache_.lens, session_, before, free && cache_.handles.object.empty());
         const bool follows = lenses && followPointer(session_, before, free);
-        const bool moving = onHandle || onLens || follows ||
-                            handleMouse(context_, cache_.hand, cache_.target.get(), picture_, world_, "menu");
-        drawMenu(context_, "menu", view_, cache_.target.get(), picture_, world_);
+        const bool moving = onHandle || onLens || follows || inCallout ||
+                            handleMouse(context_, cache_.hand, picked(), picture_, world_, "menu");
+        drawVolumeMenu(context_, "menu", view_, picked(), picture_, world_);
         if (cache_.hand.dragging() || cache_.lens.active || cache_.handles.active) context_.interacting = true;
         return moving;
     }
@@ -339,6 +306,9 @@ private:
     ImVec2 triadAt_; ///< its middle
     bool hasTriad_;  ///< or would have it: what is left out of a picture keeps its place
     LinkControl chain_;
+    const std::string& pane_;
+    CalloutsBeside callouts_;
+    const vis::Scene* scene_ = nullptr; ///< of this frame
     ImDrawList* list_ = nullptr;
     std::optional<float> legendLeft_;              ///< of a legend at the bottom, pixels
     std::vector<std::pair<ImVec2, ImVec2>> taken_; ///< corners of what is drawn already, which labels keep clear of
@@ -348,7 +318,7 @@ void drawSpace(ViewContext& context, const std::string& pane, VolumeView& view) 
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const PictureBox picture{ImGui::GetCursorScreenPos(), {std::floor(room.x), std::floor(room.y)}};
     if (picture.size.x < 8 || picture.size.y < 8) return;
-    SpacePicture(context, cacheOf<VolumeCache>(context, pane), view, picture).draw(pane);
+    SpacePicture(context, cacheOf<VolumeCache>(context, pane), view, picture, pane).draw();
 }
 
 /// The data that a plane at all times is cut from, through a renderer of their own.

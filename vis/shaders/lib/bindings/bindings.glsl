@@ -9,7 +9,7 @@
 //             LAYER_PLANE(i): page of planeTable for LOOKUP_PLANE and LOOKUP_SLAB;
 //             COLORED, LAYER_COLORED(i), LAYER_COLOR(i), LAYER_COLOR_ROW(i): see lib/layers/color_by.glsl
 //   ISOS      number of iso-surface layers; ISO_LAYER(n)
-//   SLICES    number of slice planes; SLICE_FIELD(i)
+//   SLICES    number of slice planes; SLICE_FIELD(i); STROKES: 1 if any has strokes, SLICE_STROKES(i): 1 if it has
 //   GEOMETRY  number of layers of rasterised surfaces
 //   LAYER_LENS(i), SLICE_LENS(i)        lens that it is drawn in, -1: everywhere
 //   LAYER_BRUSHED(i), SLICE_BRUSHED(i)  effect of brushes (BRUSHED_FADE, ...)
@@ -72,6 +72,13 @@ uniform sampler2D planeTable; // pages of PLANE_SIZE x PLANE_SIZE, stacked verti
 #if SLICES > 0
 uniform vec4 slicePlane[SLICES]; // normal, offset
 uniform vec4 sliceMap[SLICES];   // transfer function position = value * x + y; z = contours, w = opacity
+#if STROKES
+uniform sampler2DArray strokeTexture;  // lightness times coverage, coverage
+uniform vec4 strokeAcross[SLICES];     // texel = (dot(across.xyz, world) + across.w, the same of up)
+uniform vec4 strokeUp[SLICES];
+uniform vec4 strokeSize[SLICES];       // texels along both edges, layer of the texture
+uniform vec2 strokeLook[SLICES];       // strength; 1 on grey
+#endif
 #endif
 
 #if GEOMETRY > 0

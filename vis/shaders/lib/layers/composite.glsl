@@ -27,7 +27,7 @@ void showComposites(int k, float at, int together) {
         c = transfer(i, x);
         c.rgb = colorBy(i, p, c.rgb);
         float doi = degreeOfInterest(p);
-        vec2 lens = lensAction(LAYER_LENS(i), world);
+        vec2 lens = lensAction(LAYER_LENS(i), world, doi);
         c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
         float opacity = c.a * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x;
 #if LOOKS

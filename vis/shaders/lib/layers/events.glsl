@@ -1,5 +1,6 @@
 // Intersections of the ray with slices and rasterised surfaces, sorted by distance.
 #include "formulas/colors.glsl"
+#include "lib/layers/strokes.glsl"
 
 #define EVENTS (SLICES + GEOMETRY)
 
@@ -36,13 +37,22 @@ void findEvents() {
             width = (abs(dot(g, across)) + abs(dot(g, up))) * abs(sliceMap[i].x) * (sliceMap[i].z + 1.0);
         }
 #endif
+        bool drawn = present(s);
+#if STROKES
+        if (SLICE_STROKES(i) == 1) {
+            vec2 strokes = strokesAt(i, world);
+            bool grey = strokeLook[i].y > 0.5;
+            c = withStrokes(grey ? vec3(kStrokeGrey) : c, strokes.x, strokeLook[i].x);
+            drawn = drawn && (!grey || strokes.y >= 0.5);
+        }
+#endif
         if (sliceMap[i].z > 0.5) c = withContours(c, level, width, int(sliceMap[i].z));
         float tolerance = 1e-5;
         bool seen = ray.meets && abs(slope) > 1e-6 && t > ray.inside.x - tolerance && t < ray.inside.y + tolerance &&
-                    present(s);
+                    drawn;
         float at = sampleAt(t);
         events[i].at = seen && clipShows(at) ? at : kNowhere;
-        vec2 lens = lensAction(SLICE_LENS(i), world);
+        vec2 lens = lensAction(SLICE_LENS(i), world, doi);
         float alpha = min(sliceMap[i].w * focusOpacity(doi, SLICE_BRUSHED(i)) * lens.x, 1.0);
         events[i].color = vec4(focusColor(c, doi, lens.y, SLICE_BRUSHED(i)) * alpha, alpha);
         events[i].interest = focusInterest(doi, SLICE_BRUSHED(i));

@@ -28,7 +28,7 @@ void showSurfaces(int k) {
         float doi = degreeOfInterest(q);
         crossed = crossed && clipShows(at);
         vec3 world = worldAt(at);
-        vec2 lens = lensAction(LAYER_LENS(i), world);
+        vec2 lens = lensAction(LAYER_LENS(i), world, doi);
         float alpha = crossed ? min(layerMap[i].w * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, 1.0) : 0.0;
         bool valued = FIELD_COVERAGE(field) == 1; // whether the value at q is of use
 #if LOOKS

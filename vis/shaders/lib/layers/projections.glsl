@@ -82,7 +82,7 @@ void showProjections() {
             doi = degreeOfInterest(p);
             c = transfer(i, x);
             c.rgb = colorBy(i, p, c.rgb);
-            vec2 lens = lensAction(LAYER_LENS(i), worldAt(at));
+            vec2 lens = lensAction(LAYER_LENS(i), worldAt(at), doi);
             c.rgb = focusColor(c.rgb, doi, lens.y, LAYER_BRUSHED(i));
             alpha = best[i] >= 0.0
                         ? min(min(1.0, layerMap[i].z * c.a) * focusOpacity(doi, LAYER_BRUSHED(i)) * lens.x, 1.0) : 0.0;

@@ -7,5 +7,6 @@ float lensRadius(int kind, vec3 u) {
     return kind == LENS_SHAPE_SPHERE     ? length(u)
            : kind == LENS_SHAPE_BOX      ? max(max(abs(u.x), abs(u.y)), abs(u.z))
            : kind == LENS_SHAPE_CYLINDER ? max(across, abs(u.z))
-                                         : across / max(1.0 + u.z, 1e-6);
+           : kind == LENS_SHAPE_DISC     ? across / max(1.0 + u.z, 1e-6)
+                                         : 2.0; // a selection: nowhere inside
 }

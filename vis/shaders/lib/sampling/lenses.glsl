@@ -8,23 +8,34 @@ vec3 lensPlace(int i, vec3 world) {
     return vec3(dot(lensToUnit[3 * i], d), dot(lensToUnit[3 * i + 1], d), dot(lensToUnit[3 * i + 2], d));
 }
 
-float lensWeightAt(int i, vec3 world) {
-    float own = lensWeight(lensRadius(LENS_KIND(i), lensPlace(i, world)), lensEdge[i].x);
+// `doi`: degree of interest there, which is the weight of a selection.
+float lensWeightAt(int i, vec3 world, float doi) {
+    float own = LENS_KIND(i) == LENS_SHAPE_SELECTION
+                    ? doi : lensWeight(lensRadius(LENS_KIND(i), lensPlace(i, world)), lensEdge[i].x);
     return lensEdge[i].y > 0.5 ? 1.0 - own : own;
+}
+
+float lensWeightAt(int i, vec3 world) {
+    return lensWeightAt(i, world, 0.0);
 }
 #endif
 
-// Factors on opacity and saturation for a layer that belongs to lens `own` (-1: to none).
-vec2 lensAction(int own, vec3 world) {
+// Factors on opacity and saturation for a layer that belongs to lens `own` (-1: to none), where the degree of interest
+// is `doi`.
+vec2 lensAction(int own, vec3 world, float doi) {
     vec2 action = vec2(1.0);
 #if LENS_ACTS
     for (int i = 0; i < LENSES; ++i) {
-        float weight = lensWeightAt(i, world);
+        float weight = lensWeightAt(i, world, doi);
         if (i == own) action = vec2(weight, 1.0);
         if (i > own) action *= vec2(mix(lensAct[i].y, lensAct[i].x, weight), mix(1.0, lensAct[i].z, weight));
     }
 #endif
     return action;
+}
+
+vec2 lensAction(int own, vec3 world) {
+    return lensAction(own, world, 0.0);
 }
 
 // The world position whose data magnifying lenses show at `world`.

@@ -1,0 +1,303 @@
+#include "app/views/pieces/pieces_data.h"
+
+#include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
+#include "app/values/selection_text.h"
+#include "app/views/pieces/piece_lanes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tessera::app {
+
+namespace {
+
+using volume::Piece;
+using volume::PieceEvent;
+using volume::PieceEventKind;
+using volume::PieceGraph;
+
+constexpr double kCoarsePieces = 4e6; ///< samples of all times together, of a first answer
+
+std::string pieceValue(const volume::DatasetInfo& info, int channel, double value) {
+    if (std::isnan(value)) return "absent";
+    const Range range = info.channelRange(info.channel(channel));
+    return formatQuantity(value, info.channel(channel).unit, (range.hi - range.lo) / 1000);
+}
+
+/// "2 and 3", "1, 2 and 3": numbers of pieces.
+std::string numbersOf(const PieceGraph& graph, const std::vector<int>& pieces) {
+    std::string text;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const std::string last = i + 1 == pieces.size() ? " and " : ", ";
+        text += (i == 0 ? "" : last) + std::to_string(graph.pieces[std::size_t(pieces[i])].track);
+    }
+    return text;
+}
+
+std::string placeText(const volume::DatasetInfo& info, glm::dvec3 place) {
+    const glm::dvec3 size = info.bounds.size();
+    const LengthUnit unit = suitableLength(info.lengthUnit, std::max({size.x, size.y, size.z}));
+    std::string text;
+    for (int axis = 0; axis < 3; ++axis)
+        text += std::string(axis > 0 ? ", " : "") + char('x' + axis) + " " +
+                formatNumber(place[axis] * unit.perUnit, size[axis] * unit.perUnit / 1000);
+    return text + (unit.name.empty() ? "" : " " + prettyUnit(unit.name));
+}
+
+/// What happens to pieces, as their numbers.
+std::string eventText(const PieceGraph& graph, const PieceEvent& event) {
+    switch (event.kind) {
+    case PieceEventKind::Birth:
+        return "is born";
+    case PieceEventKind::Death:
+        return "is gone";
+    case PieceEventKind::Enter:
+        return "appears at the border";
+    case PieceEventKind::Leave:
+        return "has left at the border";
+    case PieceEventKind::Merge:
+        return numbersOf(graph, event.from) + " merge into " + numbersOf(graph, event.to);
+    case PieceEventKind::Split:
+        return numbersOf(graph, event.from) + " splits into " + numbersOf(graph, event.to);
+    }
+    return {};
+}
+
+bool concerns(const PieceGraph& graph, const PieceEvent& event, int track) {
+    const auto isIt = [&](int piece) { return graph.pieces[std::size_t(piece)].track == track; };
+    return std::ranges::any_of(event.from, isIt) || std::ranges::any_of(event.to, isIt);
+}
+
+/// The word of an event as files have it, for the piece to which it happens.
+std::string eventOf(const PieceGraph& graph, int piece) {
+    std::string text;
+    for (const PieceEvent& event : graph.events) {
+        const bool first = event.kind == PieceEventKind::Birth || event.kind == PieceEventKind::Enter ||
+                           event.kind == PieceEventKind::Merge;
+        const std::vector<int>& of = first ? event.to : event.from;
+        if (of.size() == 1 && of.front() == piece)
+            text += (text.empty() ? "" : " ") + std::string(volume::kPieceEventNames[std::size_t(event.kind)]);
+    }
+    return text;
+}
+
+/// Half of a step of time around a stored one: lines of pieces that are there once are as long.
+double quarterStep(const std::vector<double>& times, int time) {
+    if (times.size() < 2) return 0.5;
+    const auto t = std::size_t(time);
+    const double before = t > 0 ? times[t] - times[t - 1] : times[1] - times[0];
+    const double after = t + 1 < times.size() ? times[t + 1] - times[t] : before;
+    return std::min(before, after) / 4;
+}
+
+/// From one lane to another without a corner.
+void addCurve(PlotFlow& flow, glm::dvec2 from, glm::dvec2 to, double half) {
+    constexpr int kParts = 12;
+    for (int i = 0; i <= kParts; ++i) {
+        const double s = double(i) / kParts, eased = s * s * (3 - 2 * s);
+        flow.points.emplace_back(glm::mix(from.x, to.x, s), glm::mix(from.y, to.y, eased));
+        flow.half.push_back(half);
+    }
+}
+
+} // namespace
+
+double piecesValue(const PiecesView& view, const volume::DatasetInfo& info, int channel) {
+    const Range range = info.channelRange(info.channel(channel));
+    return view.value.value_or(0.5 * (range.lo + range.hi));
+}
+
+PiecesQuestion piecesQuestion(const Session& session, const volume::DatasetInfo& info, const PiecesView& view,
+                              int channel) {
+    PiecesQuestion out;
+    out.channel = channel;
+    out.of = view.of;
+    out.leastVolume = view.leastVolume;
+    if (view.of != PiecesOf::Selected) {
+        out.value = piecesValue(view, info, channel);
+        return out;
+    }
+    out.brushes = brushedQuery(session, info, {}, {}, 1, false);
+    out.brushes.time = {}; // of all times
+    out.selection = selectionName(session);
+    return out;
+}
+
+int firstPiecesLevel(const volume::BrickGrid& grid, std::size_t times) {
+    const int coarse = grid.levelWithin(kCoarsePieces / double(std::max<std::size_t>(1, times)));
+    return coarse > volume::piecesLevel(grid, times) ? coarse : 0;
+}
+
+volume::PieceGraph readPieces(const volume::BrickSource& source, const PiecesQuestion& question, int level,
+                              const Progress& progress) {
+    volume::PiecesQuery query;
+    query.channel = question.channel;
+    query.value = question.value;
+    query.side = question.of == PiecesOf::Below ? volume::PieceSide::Below : volume::PieceSide::Above;
+    query.leastVolume = question.leastVolume;
+    query.level = level > 0 ? level : volume::piecesLevel(source.grid(), source.info().times.size());
+    if (question.of == PiecesOf::Selected) {
+        query.doiChannels = question.brushes.channels;
+        query.doi = samplesQuery(question.brushes, source.info(), 0).doi;
+    }
+    return volume::findPieces(source, query, progress);
+}
+
+std::string piecesName(const volume::DatasetInfo& info, const PiecesQuestion& question) {
+    if (question.of == PiecesOf::Selected) return question.selection;
+    return info.channel(question.channel).name + (question.of == PiecesOf::Above ? " of at least " : " of at most ") +
+           pieceValue(info, question.channel, question.value);
+}
+
+std::string piecesNote(const volume::DatasetInfo& info, const PieceGraph& graph, const PiecesQuestion& question) {
+    const auto counted = [](double count, const char* one, const char* many) {
+        return formatCount(count) + (count == 1 ? one : many);
+    };
+    std::string text = counted(graph.tracks, " piece", " pieces") + " of " + piecesName(info, question) + ", " +
+                       counted(double(graph.events.size()), " event", " events");
+    if (graph.leftOutTracks > 0)
+        text += "; " + formatCount(double(graph.leftOutTracks)) + " smaller than " +
+                formatVolume(question.leastVolume, info.lengthUnit) + " left out";
+    if (graph.level > 0) text += "; found at level " + std::to_string(graph.level) + " of detail";
+    return text;
+}
+
+std::string pieceText(const volume::DatasetInfo& info, const PieceGraph& graph, const PiecesQuestion& question,
+                      std::size_t index) {
+    const Piece& piece = graph.pieces[index];
+    std::string text =
+        "piece " + std::to_string(piece.track) + " at " + timeText(info, info.times[std::size_t(piece.time)]) + ": " +
+        formatVolume(piece.volume, info.lengthUnit) + ", " + formatCount(piece.samples) +
+        (piece.samples == 1 ? " sample" : " samples") + "\nmean " + info.channel(question.channel).name + " " +
+        pieceValue(info, question.channel, piece.mean) + ", centre at " + placeText(info, piece.centroid);
+    for (const PieceEvent& event : graph.events)
+        if (concerns(graph, event, piece.track)) {
+            const bool own = event.from.size() + event.to.size() == 1;
+            text += "\n" + timeText(info, info.times[std::size_t(event.time)]) + ": " +
+                    (own ? std::to_string(piece.track) + " " : "") + eventText(graph, event);
+        }
+    return text;
+}
+
+Table piecesTable(const volume::DatasetInfo& info, const PieceGraph& graph, const PiecesQuestion& question) {
+    Table table;
+    const std::vector<Piece>& rows = graph.pieces;
+    const std::string length = info.lengthUnit, cube = length.empty() ? "" : length + "3";
+    const volume::Channel channel = info.channel(question.channel);
+    std::vector<std::vector<int>> from(rows.size()), to(rows.size());
+    for (const volume::PieceLink& link : graph.links) {
+        from[std::size_t(link.to)].push_back(link.from);
+        to[std::size_t(link.from)].push_back(link.to);
+    }
+    const auto tracks = [&](const std::vector<int>& pieces) {
+        std::string text;
+        for (const int piece : pieces)
+            text += (text.empty() ? "" : " ") + std::to_string(rows[std::size_t(piece)].track);
+        return text;
+    };
+    const auto at = [&](const Piece& piece) { return std::size_t(&piece - rows.data()); };
+    addColumn(table, rows, {.name = info.timeName, .head = timeWord(info), .unit = info.timeUnit},
+              [&](const Piece& piece) { return info.times[std::size_t(piece.time)]; });
+    addColumn(table, rows, {.name = "piece", .head = "Piece", .kind = NumberKind::Count},
+              [](const Piece& piece) { return piece.track; });
+    addColumn(table, rows, {.name = "event", .head = "Event"},
+              [&](const Piece& piece) { return eventOf(graph, int(at(piece))); });
+    addColumn(table, rows, {.name = "volume", .head = "Volume", .unit = cube, .kind = NumberKind::Volume},
+              [](const Piece& piece) { return piece.volume; });
+    addColumn(table, rows, {.name = "samples", .head = "Samples", .kind = NumberKind::Count},
+              [](const Piece& piece) { return piece.samples; });
+    addColumn(table, rows, {.name = "mean " + channel.name, .head = "Mean " + channel.name, .unit = channel.unit},
+              [](const Piece& piece) { return piece.mean; });
+    for (int axis = 0; axis < 3; ++axis)
+        addColumn(table, rows, {.name = std::string("centroid ") + char('x' + axis), .unit = length},
+                  [axis](const Piece& piece) { return piece.centroid[axis]; });
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::string name = std::string(1, char('x' + axis));
+        addColumn(table, rows, {.name = "least " + name, .unit = length, .shown = false},
+                  [axis](const Piece& piece) { return piece.extent.lo[axis]; });
+        addColumn(table, rows, {.name = "greatest " + name, .unit = length, .shown = false},
+                  [axis](const Piece& piece) { return piece.extent.hi[axis]; });
+    }
+    addColumn(table, rows, {.name = "at the border", .kind = NumberKind::Flag, .shown = false},
+              [](const Piece& piece) { return piece.atBorder ? 1 : 0; });
+    addColumn(table, rows, {.name = "comes from", .shown = false},
+              [&](const Piece& piece) { return tracks(from[at(piece)]); });
+    addColumn(table, rows, {.name = "becomes", .shown = false},
+              [&](const Piece& piece) { return tracks(to[at(piece)]); });
+    table.names = 2;
+    table.notes = {"pieces: " + piecesNote(info, graph, question),
+                   "a piece: connected samples at a time; its number is the same while it neither merges nor splits",
+                   "volumes and extents are those of the samples' cells; centroids and means by volume"};
+    return table;
+}
+
+std::vector<glm::dvec2> piecePlaces(const volume::DatasetInfo& info, const PieceGraph& graph) {
+    const PieceLanes lanes = pieceLanes(graph);
+    std::vector<glm::dvec2> places;
+    for (const Piece& piece : graph.pieces)
+        places.emplace_back(info.times[std::size_t(piece.time)],
+                            lanes.count - 0.5 - lanes.lane[std::size_t(piece.track)]);
+    return places;
+}
+
+Plot piecesPlot(const volume::DatasetInfo& info, const PieceGraph& graph, const PiecesQuestion& question,
+                const PiecesLook& look) {
+    constexpr double kHalfLane = 0.42;
+    Plot plot;
+    const PieceLanes lanes = pieceLanes(graph);
+    const std::vector<glm::dvec2> places = piecePlaces(info, graph);
+    double largest = 0;
+    for (const Piece& piece : graph.pieces) largest = std::max(largest, piece.volume);
+    const double span = info.times.back() - info.times.front(), margin = span > 0 ? span * 0.03 : 1;
+    plot.title = "Pieces of " + piecesName(info, question);
+    plot.note = "width by volume, at most " + formatVolume(largest, info.lengthUnit);
+    plot.x = {.title = timeWord(info),
+              .range = {info.times.front() - margin, info.times.back() + margin},
+              .unit = info.timeUnit};
+    plot.y = {.title = "", .range = {0, double(std::max(1, lanes.count))}, .numbered = false};
+    plot.cursorX = look.time;
+    const auto halfOf = [&](const Piece& piece) { return largest > 0 ? kHalfLane * piece.volume / largest : 0; };
+    const glm::vec4 usual = look.dark ? glm::vec4(0.45f, 0.58f, 0.7f, 1) : glm::vec4(0.42f, 0.55f, 0.68f, 1),
+                    chosen = glm::vec4(plotInk(0, look.dark), 1);
+    const auto inkOf = [&](int track) { return track == look.chosen ? chosen : usual; };
+    for (const volume::PieceLink& link : graph.links) {
+        const Piece &from = graph.pieces[std::size_t(link.from)], &to = graph.pieces[std::size_t(link.to)];
+        const glm::dvec2 a = places[std::size_t(link.from)], b = places[std::size_t(link.to)];
+        PlotFlow& flow = plot.flows.emplace_back();
+        flow.color = inkOf(from.track);
+        if (from.track == to.track) {
+            flow.points = {a, b};
+            flow.half = {halfOf(from), halfOf(to)};
+        } else {
+            addCurve(flow, a, b, std::min(halfOf(from), halfOf(to)));
+        }
+    }
+    std::vector<int> uses(std::size_t(graph.tracks) + 1, 0);
+    for (const Piece& piece : graph.pieces) ++uses[std::size_t(piece.track)];
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        const Piece& piece = graph.pieces[p];
+        if (uses[std::size_t(piece.track)] > 1) continue;
+        const double reach = quarterStep(info.times, piece.time), half = halfOf(piece);
+        plot.flows.push_back(
+            {{places[p] - glm::dvec2(reach, 0), places[p] + glm::dvec2(reach, 0)}, {half, half}, inkOf(piece.track)});
+    }
+    if (!look.events) return plot;
+    static constexpr std::array<const char*, 6> kNames{"birth", "death", "merge", "split", "enters", "leaves"};
+    for (std::size_t kind = 0; kind < kNames.size(); ++kind) {
+        PlotSeries series{.name = kNames[kind], .points = {}, .dots = true};
+        series.color = plotInk(std::array<std::size_t, 6>{2, 5, 3, 0, 4, 1}[kind], look.dark);
+        for (const PieceEvent& event : graph.events) {
+            if (std::size_t(event.kind) != kind) continue;
+            const bool begins = event.kind == PieceEventKind::Birth || event.kind == PieceEventKind::Enter ||
+                                event.kind == PieceEventKind::Merge;
+            series.points.push_back(places[std::size_t((begins ? event.to : event.from).front())]);
+            series.points.emplace_back(std::nan(""), std::nan(""));
+        }
+        if (!series.points.empty()) plot.series.push_back(std::move(series));
+    }
+    return plot;
+}
+
+} // namespace tessera::app
