@@ -1,21 +1,13 @@
 #include "app/data/plane_sources.h"
 
 #include "app/data/picture_lattice.h"
-#include "volume/sources/memory_source.h"
-#include "volume/sources/time_axis.h"
+#include "volume/sources/plane_source.h"
 
 namespace tessera::app {
 
-namespace {
-
-constexpr std::size_t kPlanesLoaded = std::size_t(1) << 30; // bytes kept
-
-} // namespace
-
 Sources cutByPlane(const Sources& whole, const DataRef& data) {
     const auto cut = [&](const std::shared_ptr<const volume::BrickSource>& source) {
-        return volume::makeMemorySource(volume::withTimeAlong(source, *data.timeAxis),
-                                        {.lattice = volume::LatticeKind::CC, .budget = kPlanesLoaded});
+        return volume::makePlaneSource(source, *data.timeAxis);
     };
     const auto numbers = cut(whole.numbers);
     NumberOrigin origin = whole.origin;

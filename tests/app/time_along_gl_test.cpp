@@ -9,7 +9,7 @@
 #include "app/workbench/fit_box.h"
 #include "tests/app/views_fixture.h"
 #include "tests/app/workbench_fixture.h"
-#include "volume/sources/time_axis.h"
+#include "volume/sources/plane_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ struct TimeAlong : ViewsTest {
     void SetUp() override {
         ViewsTest::SetUp();
         space = fuelCell(volume::LatticeKind::CC);
-        show(volume::makeMemorySource(volume::withTimeAlong(space, cut), {}));
+        show(volume::makePlaneSource(space, cut));
         session.data.timeAxis = cut;
         view.inSpace = true;
     }
@@ -203,7 +203,7 @@ TEST_F(TimeAlong, ReadOutsGiveThePlaceAndTheTime) {
     };
     ASSERT_TRUE(temperature(*source));
     EXPECT_EQ(probeHere(session, info), 0u);
-    const auto other = volume::makeMemorySource(volume::withTimeAlong(space, {volume::SpaceAxis::Z, 0.75}), {});
+    const auto other = volume::makePlaneSource(space, {volume::SpaceAxis::Z, 0.75});
     EXPECT_FALSE(temperature(*other));
     EXPECT_NEAR(*temperature(*source), temperature(*space).value(), 1e-3);
 }
@@ -224,7 +224,7 @@ TEST(PlaneText, SaysPlaceTimeAndSpeed) {
 
 TEST_F(TimeAlong, APlaneThatMovesIsDraggedWhereItIsAtTheTimeShown) {
     cut = {volume::SpaceAxis::Z, 0.5, 60, 0.5};
-    show(volume::makeMemorySource(volume::withTimeAlong(space, cut), {}));
+    show(volume::makePlaneSource(space, cut));
     session.data.timeAxis = cut;
     const volume::DatasetInfo& whole = space->info();
     const volume::Box& box = whole.bounds;

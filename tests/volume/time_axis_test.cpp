@@ -1,7 +1,8 @@
-#include "volume/sources/time_axis.h"
+#include "volume/sources/plane_source.h"
 
 #include "volume/base/error.h"
 #include "volume/reconstruct/probe.h"
+#include "volume/reconstruct/sample_grid.h"
 #include "volume/sources/memory_source.h"
 
 #include <cmath>
@@ -55,8 +56,19 @@ std::shared_ptr<const BrickSource> moving(LatticeKind kind) {
         {.lattice = kind});
 }
 
+/// The samples of a plane: of the parameter and of the time.
+struct Cut {
+    std::shared_ptr<const BrickSource> source;
+    DatasetInfo info;
+    SampleGrid values, clock;
+};
+Cut cutBy(std::shared_ptr<const BrickSource> source, const TimeAxis& wanted) {
+    const auto made = makePlaneSource(std::move(source), wanted);
+    return {made, made->info(), readSamples(*made, 0, 0, 0), readSamples(*made, 1, 0, 0)};
+}
+
 /// Calls visit(sample, its point in space and time, which is solved for from the equation alone).
-void forSamples(const Dataset& made, const std::function<void(std::size_t, glm::dvec4)>& visit) {
+void forSamples(const Cut& made, const std::function<void(std::size_t, glm::dvec4)>& visit) {
     const SpaceTimePlane& plane = *made.info.plane;
     const Lattice& grid = made.info.lattice;
     for (int z = 0; z < grid.size.z; ++z)
@@ -73,7 +85,7 @@ void forSamples(const Dataset& made, const std::function<void(std::size_t, glm::
 }
 
 TEST(TimeAxis, APlaneAtAllTimesKeepsItsValuesAndItsShape) {
-    const Dataset made = withTimeAlong(moving(LatticeKind::CC), {SpaceAxis::Z, 0.25}); // z = 1
+    const Cut made = cutBy(moving(LatticeKind::CC), {SpaceAxis::Z, 0.25}); // z = 1
     EXPECT_EQ(made.info.lattice.size, glm::ivec3(5, 3, 4));
     EXPECT_EQ(made.info.bounds.size(), glm::dvec3(4, 2, 4)) << "as before";
     EXPECT_EQ(made.info.times.size(), 1u);
@@ -81,18 +93,18 @@ TEST(TimeAxis, APlaneAtAllTimesKeepsItsValuesAndItsShape) {
     EXPECT_DOUBLE_EQ(made.info.plane->timePerLength, 1) << "4 of time over 4 of length";
     EXPECT_DOUBLE_EQ(made.info.bounds.lo.z, 1) << "time 1";
 
-    const Field values = made.read(0, 0, 0), clock = made.read(1, 0, 0);
+    const SampleGrid &values = made.values, &clock = made.clock;
     const double times[] = {1, 2, 3, 5}; // those of the file, where they lie
     for (int k = 0; k < 4; ++k)
         for (int x = 0; x < 5; ++x) {
             const std::size_t i = made.info.lattice.index({x, 1, k});
             EXPECT_DOUBLE_EQ(made.info.lattice.position({x, 1, k}).z, times[k]);
-            EXPECT_EQ(clock.value(i), times[k]);
+            EXPECT_EQ(clock.values[i], times[k]);
             if (x > 0) {
-                ASSERT_TRUE(values.present(i));
-                EXPECT_EQ(values.value(i), float(100 * x + 10 + times[k])) << "no number but the file's";
+                ASSERT_TRUE(values.isPresent(i));
+                EXPECT_EQ(values.values[i], float(100 * x + 10 + times[k])) << "no number but the file's";
             } else {
-                EXPECT_EQ(values.present(i), k < 2) << k;
+                EXPECT_EQ(values.isPresent(i), k < 2) << k;
             }
         }
 }
@@ -100,24 +112,24 @@ TEST(TimeAxis, APlaneAtAllTimesKeepsItsValuesAndItsShape) {
 TEST(TimeAxis, AnyAxisAndLattice) {
     const auto source = moving(LatticeKind::BCC);
     for (const SpaceAxis axis : {SpaceAxis::X, SpaceAxis::Y, SpaceAxis::Z}) {
-        const Dataset made = withTimeAlong(source, {axis, 0.5});
+        const Cut made = cutBy(source, {axis, 0.5});
         const int a = int(axis);
         EXPECT_EQ(made.info.lattice.kind, LatticeKind::CC);
         EXPECT_EQ(made.info.lattice.size[a], 4);
         EXPECT_EQ(made.info.bounds.size(), source->info().bounds.size());
-        const Field values = made.read(0, 0, 0);
+        const SampleGrid& values = made.values;
         glm::ivec3 middle = made.info.lattice.size / 2;
         middle[a] = 0;
         glm::dvec3 at = made.info.lattice.position(middle);
         at[a] = source->info().bounds.center()[a];
-        EXPECT_NEAR(values.value(made.info.lattice.index(middle)), 100 * at.x + 10 * at.z + 1, 3)
+        EXPECT_NEAR(values.values[made.info.lattice.index(middle)], 100 * at.x + 10 * at.z + 1, 3)
             << "resampled to BCC and back";
     }
 }
 
 TEST(TimeAxis, NeedsTimesAndAnExtent) {
     const auto source = moving(LatticeKind::CC);
-    EXPECT_THROW(withTimeAlong(makeMemorySource(withTimeAlong(source, {}), {.lattice = LatticeKind::CC}), {}), Error);
+    EXPECT_THROW(makePlaneSource(makePlaneSource(source, {}), {}), Error);
     Dataset flat;
     flat.info.lattice.size = {4, 4, 1};
     flat.info.bounds = {glm::dvec3(0), glm::dvec3(3, 3, 0)};
@@ -125,9 +137,9 @@ TEST(TimeAxis, NeedsTimesAndAnExtent) {
     flat.info.parameters.resize(1);
     flat.read = [lattice = flat.info.lattice](int, int, int) { return makeField(lattice, ScalarType::F32); };
     const auto shared = makeMemorySource(std::move(flat), {.lattice = LatticeKind::CC});
-    EXPECT_THROW(withTimeAlong(shared, {}), Error);
-    EXPECT_NO_THROW(withTimeAlong(shared, {.degrees = 0})) << "nothing is exchanged";
-    const auto by = [&](PlaneEquation equation) { return withTimeAlong(source, {.equation = equation}); };
+    EXPECT_THROW(makePlaneSource(shared, {}), Error);
+    EXPECT_NO_THROW(makePlaneSource(shared, {.degrees = 0})) << "nothing is exchanged";
+    const auto by = [&](PlaneEquation equation) { return makePlaneSource(source, {.equation = equation}); };
     EXPECT_THROW(by({0, 0, 0, 0, 1}), Error) << "no normal";
     EXPECT_THROW(by({0, 0, 0, 1, -6}), Error) << "after the last time";
     EXPECT_THROW(by({1, 1, 1, 1, 1}), Error) << "no point of it has all coordinates above 0";
@@ -183,19 +195,19 @@ TEST(SpaceTimePlane, ShowsLinearDataExactlyInEveryDirection) {
               TimeAxis{.equation = PlaneEquation{1, -1, 0.5, 0.2, -2}},
               TimeAxis{.equation = PlaneEquation{0.1, 0.4, -0.2, 1, -6}},
               TimeAxis{.equation = PlaneEquation{0, 3, 1, 0, -4}}}) {
-            const Dataset made = withTimeAlong(source, wanted);
-            const Field values = made.read(0, 0, 0), clock = made.read(1, 0, 0);
+            const Cut made = cutBy(source, wanted);
+            const SampleGrid &values = made.values, &clock = made.clock;
             const DatasetInfo& info = source->info();
             std::size_t seen = 0;
             forSamples(made, [&](std::size_t i, glm::dvec4 p) {
                 bool inside = p.w >= -1e-8 && p.w <= 12 + 1e-8;
                 for (int a = 0; a < 3; ++a)
                     inside = inside && p[a] >= info.bounds.lo[a] - 1e-8 && p[a] <= info.bounds.hi[a] + 1e-8;
-                ASSERT_EQ(values.present(i), inside) << "outside of the data nothing is there";
+                ASSERT_EQ(values.isPresent(i), inside) << "outside of the data nothing is there";
                 if (!inside) return;
                 ++seen;
-                ASSERT_NEAR(values.value(i), formula(p), 1e-5);
-                ASSERT_NEAR(clock.value(i), p.w, 1e-5);
+                ASSERT_NEAR(values.values[i], formula(p), 1e-5);
+                ASSERT_NEAR(clock.values[i], p.w, 1e-5);
             });
             EXPECT_GT(seen, 10u);
         }
@@ -205,15 +217,14 @@ TEST(SpaceTimePlane, ShowsLinearDataExactlyInEveryDirection) {
 // v = t at times 0, 1 and 10: at the second time it is 1, wherever and however the plane is laid through it.
 TEST(SpaceTimePlane, UnevenTimesLieWhereTheyAre) {
     const auto source = makeMemorySource(sampled(block(), {0, 1, 10}, {0, 10}, [](glm::dvec4 p) { return p.w; }), {});
-    const Dataset at = withTimeAlong(source, {.degrees = 0, .time = 0.1});
+    const Cut at = cutBy(source, {.degrees = 0, .time = 0.1});
     EXPECT_EQ(at.info.lattice.size, block().size);
-    const Field values = at.read(0, 0, 0);
-    for (std::size_t i = 0; i < values.count(); ++i) ASSERT_EQ(values.value(i), 1);
-    const Dataset along = withTimeAlong(source, {.axis = SpaceAxis::Y, .place = 0.4});
+    const SampleGrid& values = at.values;
+    for (std::size_t i = 0; i < values.values.size(); ++i) ASSERT_EQ(values.values[i], 1);
+    const Cut along = cutBy(source, {.axis = SpaceAxis::Y, .place = 0.4});
     ASSERT_NE(along.info.lattice.axes[1], nullptr) << "an uneven axis";
-    const auto shown = makeMemorySource(along, {});
     for (const double time : {0.0, 0.5, 1.0, 4.0, 10.0}) {
-        const auto value = probe(*shown, {2, time / along.info.plane->timePerLength, 2}, 0).front();
+        const auto value = probe(*along.source, {2, time / along.info.plane->timePerLength, 2}, 0).front();
         ASSERT_TRUE(value.interpolated);
         EXPECT_NEAR(*value.interpolated, time, 1e-6);
     }
@@ -230,29 +241,77 @@ TEST(SpaceTimePlane, ThatMovesWithAWaveShowsItAtRest) {
     const std::vector<double> times = {0, 0.1, 0.35, 0.5, 0.8, 1.2, 1.5, 2};
     const auto source =
         makeMemorySource(sampled(lattice, times, {0, 1}, [&](glm::dvec4 p) { return wave(p.z - kSpeed * p.w); }), {});
-    const Dataset crest = withTimeAlong(source, {.equation = PlaneEquation{0, 0, 1, -kSpeed, 0}});
+    const Cut crest = cutBy(source, {.equation = PlaneEquation{0, 0, 1, -kSpeed, 0}});
     EXPECT_EQ(crest.info.lattice.size, lattice.size) << "solved for t: over x, y and z";
-    const Field values = crest.read(0, 0, 0);
+    const SampleGrid& values = crest.values;
     int stored = 0;
     forSamples(crest, [&](std::size_t i, glm::dvec4 p) {
-        ASSERT_TRUE(values.present(i));
+        ASSERT_TRUE(values.isPresent(i));
         std::size_t later = 1;
         while (later + 1 < times.size() && times[later] < p.w) ++later;
         const double from = times[later - 1], to = times[later], weight = (p.w - from) / (to - from);
-        EXPECT_NEAR(values.value(i), (1 - weight) * wave(p.z - kSpeed * from) + weight * wave(p.z - kSpeed * to), 1e-5);
-        stored += values.value(i) > 1 - 1e-6;
+        EXPECT_NEAR(values.values[i], (1 - weight) * wave(p.z - kSpeed * from) + weight * wave(p.z - kSpeed * to),
+                    1e-5);
+        stored += values.values[i] > 1 - 1e-6;
     });
     EXPECT_EQ(stored, 9 * int(times.size())) << "all of the crest, at every stored time";
+}
+
+// A first picture is made of few samples of the data, and bricks in which there is nothing are never read.
+TEST(SpaceTimePlane, CoarseLevelsAndStatisticsSuitTheSamples) {
+    Lattice lattice;
+    lattice.size = {17, 19, 33};
+    const auto formula = [](glm::dvec4 p) {
+        return p.x < 4 && p.w > 3 ? std::nan("") : p.x - 2 * p.y + p.z + 0.5 * p.w;
+    };
+    const auto source = makeMemorySource(sampled(lattice, {0, 1, 2, 4, 7}, {-36, 52}, formula), {.brickSize = 8});
+    for (const TimeAxis& wanted : {TimeAxis{SpaceAxis::Z, 0.3, 25, 0.9}, TimeAxis{SpaceAxis::X, 0.5, -65},
+                                   TimeAxis{.equation = PlaneEquation{1, 1, 1, 2, -20}}}) {
+        const Cut made = cutBy(source, wanted);
+        const BrickGrid& grid = made.source->grid();
+        ASSERT_EQ(grid.levels, 2);
+        for (std::size_t n = 0; n < grid.brickCount(); ++n) {
+            const glm::ivec3 brick = grid.indexOf(n);
+            for (const int channel : {0, 1}) {
+                const BrickStats stats = made.source->stats({channel, 0, 0, brick});
+                const BrickSamples fine = made.source->read({channel, 0, 0, brick});
+                std::size_t present = 0;
+                for (std::size_t i = 0; i < fine.values.size(); ++i) {
+                    if (!fine.isPresent(i)) continue;
+                    ++present;
+                    ASSERT_GE(fine.values[i], stats.min);
+                    ASSERT_LE(fine.values[i], stats.max);
+                }
+                if (stats.presentFraction == 1) ASSERT_EQ(present, fine.values.size());
+                if (stats.presentFraction == 0) ASSERT_EQ(present, 0u);
+            }
+        }
+        const SampleGrid coarse = readSamples(*made.source, 0, 0, 1);
+        std::size_t seen = 0;
+        for (int z = 0; z < coarse.lattice.size.z; ++z)
+            for (int y = 0; y < coarse.lattice.size.y; ++y)
+                for (int x = 0; x < coarse.lattice.size.x; ++x) {
+                    const std::size_t i = coarse.lattice.index({x, y, z});
+                    if (!coarse.isPresent(i)) continue;
+                    glm::dvec4 point = made.info.plane->pointAt(coarse.lattice.position({x, y, z}));
+                    ASSERT_TRUE(made.info.plane->reaches(point));
+                    ++seen;
+                    if (point.x < 5) continue; // where samples are absent
+                    ASSERT_NEAR(coarse.values[i], formula(point), 2.1)
+                        << "means of 2 x 2 x 2 samples, whole or in part";
+                }
+        EXPECT_GT(seen, 20u);
+    }
 }
 
 TEST(SpaceTimePlane, LabelsAreOfTheNearestSampleAndTime) {
     Dataset data = sampled(block(), {0, 1, 10}, {0, 12}, [](glm::dvec4 p) { return p.x + (p.w > 5 ? 8 : 0); });
     data.info.parameters[0].categorical = true;
-    const Dataset made = withTimeAlong(makeMemorySource(std::move(data), {}), {SpaceAxis::X, 0.5, 40});
-    const Field values = made.read(0, 0, 0);
+    const Cut made = cutBy(makeMemorySource(std::move(data), {}), {SpaceAxis::X, 0.5, 40});
+    const SampleGrid& values = made.values;
     forSamples(made, [&](std::size_t i, glm::dvec4 p) {
-        if (!values.present(i) || std::abs(p.w - 5.5) < 1e-6) return;
-        ASSERT_EQ(values.value(i), std::round(p.x) + (p.w > 5.5 ? 8 : 0));
+        if (!values.isPresent(i) || std::abs(p.w - 5.5) < 1e-6) return;
+        ASSERT_EQ(values.values[i], std::round(p.x) + (p.w > 5.5 ? 8 : 0));
     });
 }
 

@@ -178,14 +178,6 @@ std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::
                                    std::span<const TimePair> times) {
     std::vector<ProbeValue> out;
     out.reserve(positions.size());
-    if (isComputedBetween(source, channel)) { // as many positions together as have the same time
-        for (std::size_t i = 0, end = 0; i < positions.size(); i = end) {
-            while (end < positions.size() && times[end] == times[i]) ++end;
-            for (const ProbeValue& value : probeAlong(source, channel, positions.subspan(i, end - i), times[i]))
-                out.push_back(value);
-        }
-        return out;
-    }
     const bool label = source.info().parameters[std::size_t(source.info().channel(channel).parameter)].categorical;
     std::map<int, ChannelProbe> frames;
     const auto frame = [&](int time) -> const ChannelProbe& {

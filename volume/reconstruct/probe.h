@@ -35,7 +35,7 @@ std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, co
 std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                                    const TimePair& time);
 
-/// The same, each position at a time of its own.
+/// Each position at a time of its own; between stored times values of every channel are mixed.
 std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                                    std::span<const TimePair> times);
 

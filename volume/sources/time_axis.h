@@ -1,9 +1,8 @@
 #pragma once
 
-#include "volume/bricks/brick_source.h"
+#include "volume/field/dataset.h"
 #include "volume/field/space_axis.h"
 
-#include <memory>
 #include <optional>
 
 /// Planes of data in space and time, in any direction, as data: what moves becomes a shape that is seen at once
@@ -65,14 +64,5 @@ SpaceTimePlane planeOf(const DatasetInfo& info, const TimeAxis& wanted);
 
 /// The setting of a plane moved so that it holds a point (x, y, z, t), clamped to the data. `now`: as it is.
 TimeAxis movedTo(const SpaceTimePlane& now, TimeAxis setting, glm::dvec4 point);
-
-/// The points of a data set in a plane, as a data set of one time (DatasetInfo::plane). Of x, y and z the one that the
-/// plane is solved for gives its place to time, with its extent: so what was cubic stays so. Uneven axes that stay keep
-/// their samples; along even ones these lie at the distances of the source (BCC: those of the CC grid it stands for).
-/// Along time they lie at its times, which make an uneven axis where they are not even. Values are linear between
-/// samples and between times, labels those of the nearest sample at the nearest time; what lies outside of the source
-/// is absent. A further parameter "time" is the time itself. Frames are made when they are loaded, and read what they
-/// need at every time. Throws Error as planeOf does.
-Dataset withTimeAlong(std::shared_ptr<const BrickSource> source, const TimeAxis& wanted);
 
 } // namespace tessera::volume
