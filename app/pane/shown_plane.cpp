@@ -1,10 +1,14 @@
 #include "app/pane/shown_plane.h"
 
+#include "app/pane/oblique_plane.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "volume/base/error.h"
 
+#include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
 
 namespace tessera::app {
 
@@ -71,6 +75,25 @@ std::string planeText(const volume::DatasetInfo& info, const volume::SpaceTimePl
                                                                        (info.timeUnit.empty() ? "time" : info.timeUnit);
     return placeText(placeAt(plane.lo.w)) + " at " + timeOf(plane.lo.w) + ", moving at " +
            withUnit(formatNumber(speed, usual / 1000), per);
+}
+
+Range timesMet(const volume::SpaceTimePlane& plane) {
+    if (plane.normal.w == 0) return {plane.lo.w, plane.hi.w};
+    Range meets{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (int corner = 0; corner < 8; ++corner) {
+        glm::dvec3 at;
+        for (int a = 0; a < 3; ++a) at[a] = (corner >> a & 1) != 0 ? plane.hi[a] : plane.lo[a];
+        const double time = -(glm::dot(glm::dvec3(plane.normal), at) + plane.e) / plane.normal.w;
+        meets = {std::min(meets.lo, time), std::max(meets.hi, time)};
+    }
+    return {std::max(meets.lo, plane.lo.w), std::min(meets.hi, plane.hi.w)};
+}
+
+std::vector<glm::dvec3> sectionAtTime(const volume::SpaceTimePlane& plane, double time, const volume::Box& box) {
+    const glm::dvec3 normal(plane.normal);
+    if (normal == glm::dvec3(0)) return {};
+    const glm::dvec3 at = -(plane.normal.w * time + plane.e) / glm::dot(normal, normal) * normal;
+    return planeSection({unitNormal(normal), at}, box);
 }
 
 } // namespace tessera::app

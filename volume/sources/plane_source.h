@@ -1,5 +1,6 @@
 #pragma once
 
+#include "volume/bricks/brick_source.h"
 #include "volume/sources/time_axis.h"
 
 #include <memory>
