@@ -1,7 +1,4 @@
 #include "app/pane/axes3d.h"
-#include "app/pane/shown_plane.h"
-#include "app/queries/probe_values.h"
-#include "app/queries/readout.h"
 #include "app/tools/camera_controller.h"
 #include "app/ui/time_text.h"
 #include "app/views/curves/profile_data.h"
@@ -13,14 +10,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <gmock/gmock.h>
 #include <imgui_internal.h>
 
 /// Data whose times run along an axis, with the data in space beside them.
 namespace tessera::app {
 namespace {
-
-using testing::MatchesRegex;
 
 struct TimeAlong : ViewsTest {
     void SetUp() override {
@@ -70,7 +64,7 @@ TEST_F(TimeAlong, TheCrossHairIsATimeInOneAndAPlaceInTheOther) {
     edited.cursor.z = whole.bounds.hi.z;
     edited.camera.distance *= 2;
     const double time = session.cursor.z;
-    takeFromSpace(session, inner, edited, whole);
+    takeFromSpace(session, inner, edited, along, whole);
     EXPECT_EQ(session.cursor.x, whole.bounds.hi.x);
     EXPECT_EQ(session.cursor.z, time);
     EXPECT_EQ(session.data.timeAxis->place, 1);
@@ -178,48 +172,6 @@ TEST_F(TimeAlong, ProfilesAlongTimeAreInItsUnit) {
     volume::DatasetInfo lengths = info; // the same numbers as lengths
     lengths.plane.reset();
     EXPECT_EQ(lineAxis(session, lengths, profile).title, "distance");
-}
-
-TEST_F(TimeAlong, ReadOutsGiveThePlaceAndTheTime) {
-    const volume::DatasetInfo &info = source->info(), &whole = space->info();
-    session.cursor = info.bounds.center(); // along z: half of the time
-    Readout readout;
-    const std::string csv = readoutCsv(session, info, readout);
-    const auto valueOf = [&](const std::string& name, const std::string& unit) {
-        const std::string head = "\n" + name + "," + unit + ",";
-        const auto at = csv.find(head);
-        return at == csv.npos ? std::nan("") : std::stod(csv.substr(at + head.size()));
-    };
-    for (const int axis : {0, 1})
-        EXPECT_NEAR(valueOf(std::string(1, "xyz"[axis]), whole.lengthUnit), session.cursor[axis], 1e-9);
-    EXPECT_NEAR(valueOf("z", whole.lengthUnit), whole.bounds.lo.z + 0.25 * whole.bounds.size().z, 1e-9) << csv;
-    EXPECT_NEAR(valueOf(whole.timeName, whole.timeUnit), 0.5 * (whole.times.front() + whole.times.back()), 1e-9);
-    // What is kept there is a point in space and time: this plane holds it, another does not.
-    const Probe& probe = session.probes[addProbe(session, info)];
-    EXPECT_NEAR(probe.time, valueOf(whole.timeName, whole.timeUnit), 1e-9);
-    const auto temperature = [&](const volume::BrickSource& of) {
-        const auto channel = std::size_t(of.info().findChannel("T").value());
-        return readProbes(of, session.probes).front()[channel].interpolated;
-    };
-    ASSERT_TRUE(temperature(*source));
-    EXPECT_EQ(probeHere(session, info), 0u);
-    const auto other = volume::makePlaneSource(space, {volume::SpaceAxis::Z, 0.75});
-    EXPECT_FALSE(temperature(*other));
-    EXPECT_NEAR(*temperature(*source), temperature(*space).value(), 1e-3);
-}
-
-TEST(PlaneText, SaysPlaceTimeAndSpeed) {
-    volume::DatasetInfo info;
-    info.lengthUnit = "mm";
-    info.bounds = {glm::dvec3(0), glm::dvec3(4)};
-    info.times = {0, 2, 8};
-    const auto textOf = [&](const volume::TimeAxis& plane) { return planeText(info, volume::planeOf(info, plane)); };
-    EXPECT_THAT(textOf({volume::SpaceAxis::Z, 0.5}), MatchesRegex("z = 2(\\.0*)? mm at all times"));
-    EXPECT_THAT(textOf({.degrees = 0, .time = 0.25}), MatchesRegex("t = 2(\\.0*)? s everywhere"));
-    EXPECT_THAT(textOf({volume::SpaceAxis::Y, 0.5, 45}),
-                MatchesRegex("y = 0(\\.0*)? mm at t = 0(\\.0*)? s, moving at 0\\.50* mm/s"));
-    EXPECT_THAT(textOf({.equation = volume::PlaneEquation{1, 2, 0, -0.5, -3}}),
-                MatchesRegex("x \\+ 2(\\.0*)? y - 0\\.50* t - 3(\\.0*)? = 0 \\(mm, s\\)"));
 }
 
 TEST_F(TimeAlong, APlaneThatMovesIsDraggedWhereItIsAtTheTimeShown) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <variant>
 
 namespace tessera::app {
@@ -36,7 +37,7 @@ Session sessionInSpace(const Session& session, const volume::DatasetInfo& along,
         point = cut->pointAt(session.cursor); // as it is being moved
     point = glm::clamp(point, glm::dvec4(space.bounds.lo, space.times.front()),
                        glm::dvec4(space.bounds.hi, space.times.back()));
-    inner.cursor = point;
+    inner.cursor = glm::dvec3(point);
     inner.time = point.w;
     std::erase_if(inner.layers, [&](const vis::Layer& layer) { return !shownInSpace(layer, space); });
     std::erase_if(inner.selection.brushes, [&](const vis::Brush& brush) {
@@ -51,17 +52,27 @@ Session sessionInSpace(const Session& session, const volume::DatasetInfo& along,
     return inner;
 }
 
-void takeFromSpace(Session& session, const Session& before, const Session& edited, const volume::DatasetInfo& space) {
+void takeFromSpace(Session& session, const Session& before, const Session& edited, const volume::DatasetInfo& along,
+                   const volume::DatasetInfo& space) {
     if (!session.data.timeAxis || !edited.data.timeAxis) return;
     session.camera = edited.camera;
     session.data.timeAxis = edited.data.timeAxis;
-    if (edited.cursor == before.cursor) return;
-    const glm::dvec4 point(edited.cursor, before.time);
-    if (const auto cut = planeShown(session, space); cut && !cut->holds(point))
+    const bool went = edited.cursor != before.cursor, moved = edited.data.timeAxis != before.data.timeAxis;
+    if (!went && !moved) return;
+    glm::dvec4 point(edited.cursor, before.time);
+    auto cut = planeShown(session, space);
+    if (cut && went && !cut->holds(point)) {
         session.data.timeAxis = volume::movedTo(*cut, *session.data.timeAxis, point);
-    if (const auto cut = planeShown(session, space))
-        for (int a = 0; a < 3; ++a)
-            if (edited.cursor[a] != before.cursor[a] && a != cut->solved) session.cursor[a] = edited.cursor[a];
+        cut = planeShown(session, space);
+    }
+    if (!cut || !along.plane || cut->solved != along.plane->solved) return; // until the data are those of the plane
+    // The cross-hair goes along with the plane, at the time shown.
+    const glm::dvec3 normal(cut->normal);
+    if (moved && glm::dot(normal, normal) > 0)
+        point -= glm::dvec4((glm::dot(cut->normal, point) + cut->e) / glm::dot(normal, normal) * normal, 0);
+    point = glm::clamp(point, cut->lo, cut->hi);
+    for (int a = 0; a < 3; ++a)
+        if (point[a] != before.cursor[a] && a != cut->solved) session.cursor[a] = point[a];
 }
 
 } // namespace tessera::app

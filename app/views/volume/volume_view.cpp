@@ -337,7 +337,7 @@ void drawBeside(ViewContext& context, const std::string& pane, VolumeView& view,
     own.runCommand = context.runCommand;
     own.cameraKey = context.cameraKey;
     drawSpace(own, pane, view);
-    takeFromSpace(context.session, before, edited, space->info());
+    takeFromSpace(context.session, before, edited, context.numbers->info(), space->info());
     for (std::string& text : cache.renderer->takeMessages()) own.answers.messages.push_back(std::move(text));
     takeAnswers(context, own, "data in space: ");
 }
