@@ -130,7 +130,7 @@ void carryPoint(Session& session, const volume::DatasetInfo& from, const volume:
         session.cursor = to.plane->positionOf(point);
         return;
     }
-    session.cursor = point;
+    session.cursor = glm::dvec3(point);
     session.time = point.w;
     for (const double stored : to.times)
         if (std::abs(session.time - stored) < 1e-9 * (to.times.back() - to.times.front())) session.time = stored;

@@ -14,7 +14,7 @@ namespace tessera::app {
 
 namespace {
 
-std::string withUnit(const std::string& number, const std::string& unit) {
+std::string numberInUnit(const std::string& number, const std::string& unit) {
     return unit.empty() ? number : number + " " + prettyUnit(unit);
 }
 
@@ -52,7 +52,7 @@ std::string planeText(const volume::DatasetInfo& info, const volume::SpaceTimePl
         if (normal[axis] != 0) across = across < 0 ? axis : 3;
     const glm::dvec4 size = plane.hi - plane.lo;
     const auto timeOf = [&](double time) {
-        return timeWord(info) + " = " + withUnit(formatNumber(time, size.w / 1000), info.timeUnit);
+        return timeWord(info) + " = " + numberInUnit(formatNumber(time, size.w / 1000), info.timeUnit);
     };
     if (across < 0) return timeOf(-plane.e / normal.w) + " everywhere";
     if (across == 3) {
@@ -66,7 +66,7 @@ std::string planeText(const volume::DatasetInfo& info, const volume::SpaceTimePl
     const auto placeAt = [&](double time) { return -(plane.e + normal.w * time) / normal[across]; };
     const auto placeText = [&](double place) {
         return std::string(1, "xyz"[across]) + " = " +
-               withUnit(formatNumber(place * unit.perUnit, size[across] * unit.perUnit / 1000), unit.name);
+               numberInUnit(formatNumber(place * unit.perUnit, size[across] * unit.perUnit / 1000), unit.name);
     };
     if (normal.w == 0) return placeText(placeAt(0)) + " at all times";
     const double speed = -normal.w / normal[across] * unit.perUnit, usual = size[across] * unit.perUnit / size.w;
@@ -74,7 +74,7 @@ std::string planeText(const volume::DatasetInfo& info, const volume::SpaceTimePl
                                                                  : (unit.name.empty() ? "length" : unit.name) + "/" +
                                                                        (info.timeUnit.empty() ? "time" : info.timeUnit);
     return placeText(placeAt(plane.lo.w)) + " at " + timeOf(plane.lo.w) + ", moving at " +
-           withUnit(formatNumber(speed, usual / 1000), per);
+           numberInUnit(formatNumber(speed, usual / 1000), per);
 }
 
 Range timesMet(const volume::SpaceTimePlane& plane) {

@@ -17,7 +17,7 @@ std::size_t addProbe(Session& session, const volume::DatasetInfo& info) {
     std::size_t number = session.probes.size() + 1;
     while (taken("probe " + std::to_string(number))) ++number;
     const glm::dvec4 point = info.pointAt(session.cursor, session.time);
-    session.probes.push_back({"probe " + std::to_string(number), point, point.w});
+    session.probes.push_back({"probe " + std::to_string(number), glm::dvec3(point), point.w});
     return session.probes.size() - 1;
 }
 

@@ -78,7 +78,9 @@ TEST_F(ShownPlane, TheTimeShownStaysWhileAPlaneIsMoved) {
         double time = -1;
         for (const double place : {0.4, 0.3, 0.6}) { // as a hand drags, from frame to frame
             const Session inner = sessionInSpace(session, source->info(), whole);
-            if (time >= 0) EXPECT_NEAR(inner.time, time, 1e-9) << degrees;
+            if (time >= 0) {
+                EXPECT_NEAR(inner.time, time, 1e-9) << degrees;
+            }
             time = inner.time;
             Session edited = inner;
             glm::dvec4 to(inner.cursor, inner.time);

@@ -282,8 +282,12 @@ TEST(SpaceTimePlane, CoarseLevelsAndStatisticsSuitTheSamples) {
                     ASSERT_GE(fine.values[i], stats.min);
                     ASSERT_LE(fine.values[i], stats.max);
                 }
-                if (stats.presentFraction == 1) ASSERT_EQ(present, fine.values.size());
-                if (stats.presentFraction == 0) ASSERT_EQ(present, 0u);
+                if (stats.presentFraction == 1) {
+                    ASSERT_EQ(present, fine.values.size());
+                }
+                if (stats.presentFraction == 0) {
+                    ASSERT_EQ(present, 0u);
+                }
             }
         }
         const SampleGrid coarse = readSamples(*made.source, 0, 0, 1);
