@@ -107,7 +107,7 @@ bool useSlice(ViewContext& context, const CalloutPart& shown) {
 void drawLength(const ViewContext& context, const PictureBox& box, const vis::Camera& camera, float height) {
     const volume::DatasetInfo& info = context.source->info();
     const Session& session = context.session;
-    if (!context.decoration.scaleBar || box.size.x < em() * 8 || timeAxisOf(session, info)) return;
+    if (!context.decoration.scaleBar || box.size.x < em() * 8 || info.timeAxis()) return;
     const ScaleBar bar = scaleBar(camera, vis::worldFrame(info, session.stretch), session.stretch, info.lengthUnit,
                                   height, std::min(em() * 6, box.size.x * 0.45f));
     const float width = std::max(bar.pixels, ImGui::CalcTextSize(bar.text.c_str()).x);
@@ -155,7 +155,7 @@ vis::Camera sliceCamera(const PlanePicture& picture, const vis::WorldFrame& worl
 void drawSlice(ViewContext& context, const CalloutPart& shown) {
     const auto slice = calloutSlice(context, shown.callout, shown.place, withoutBar(shown.inner));
     if (!slice) return;
-    drawPicture(context, shown.state.plane, slice->picture, slice->frame, shown.share);
+    drawPicture(context, shown.state.plane, slice->picture, slice->frame, shown.share, shown.key);
     drawOver(context, shown.state.plane, slice->picture, slice->frame, shown.key);
     const PlotFrame& plot = slice->frame.plot;
     drawLength(context, {plot.min, {plot.width(), plot.height()}}, sliceCamera(slice->picture, slice->frame.world),
@@ -181,9 +181,9 @@ std::string calloutTitle(const ViewContext& context, const Callout& callout, con
         const LengthUnit unit = axisLabels(session, info)[std::size_t(axis)].unit;
         where = place.name + " = " +
                 formatQuantity(session.cursor[axis] * unit.perUnit, unit.name,
-                               tellingLength(info, axis, session.cursor[axis], 0.01) * unit.perUnit);
+                               tellingLength(info, axis, session.cursor, 0.01) * unit.perUnit);
     }
-    if (info.times.size() > 1 && !timeAxisOf(session, info)) when = timeValueText(info, session.time);
+    if (info.times.size() > 1 && !info.timeAxis()) when = timeValueText(info, session.time);
     if (!callout.name.empty()) what = callout.name, where.clear();
     const auto joined = [](std::initializer_list<std::string> parts) {
         std::string text;

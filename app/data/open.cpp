@@ -6,6 +6,7 @@
 #include "app/data/packing_errors.h"
 #include "app/data/picture_lattice.h"
 #include "app/data/picture_session.h"
+#include "app/data/plane_sources.h"
 #include "app/described/within_ranges.h"
 #include "app/user_files/import_memory.h"
 
@@ -120,21 +121,19 @@ DataRef dataNamed(const std::vector<std::string>& inputs, const volume::ImportOp
 
 namespace {
 
-/// When time replaces an axis, moves the cross-hair to the time shown, and vice versa; its former position along that
-/// axis is TimeAxis::place. `session` still refers to the former data, described by `from`.
-void carryTime(Session& session, const volume::DatasetInfo& from, const volume::DatasetInfo& to,
-               const std::optional<volume::TimeAxis>& wanted) {
-    const std::optional<volume::TimeAxis>& shown = session.data.timeAxis;
-    if (shown.has_value() == wanted.has_value()) return;
-    const int axis = int(wanted ? wanted->axis : shown->axis);
-    if (wanted) {
-        session.cursor[axis] = session.time / volume::timePerLength(to, *wanted);
-    } else {
-        session.time = session.cursor[axis] * volume::timePerLength(from, *shown);
-        for (const double stored : to.times)
-            if (std::abs(session.time - stored) < 1e-9 * (to.times.back() - to.times.front())) session.time = stored;
-        session.cursor[axis] = to.bounds.lo[axis] + shown->place * to.bounds.size()[axis];
+/// Between data and a plane of theirs in space and time, or between two planes, the cross-hair stays where it is in
+/// space and time, as far as the plane has that point. `session` still refers to the former data, described by `from`.
+void carryPoint(Session& session, const volume::DatasetInfo& from, const volume::DatasetInfo& to) {
+    if (from.plane == to.plane) return;
+    const glm::dvec4 point = from.pointAt(session.cursor, session.time);
+    if (to.plane) {
+        session.cursor = to.plane->positionOf(point);
+        return;
     }
+    session.cursor = glm::dvec3(point);
+    session.time = point.w;
+    for (const double stored : to.times)
+        if (std::abs(session.time - stored) < 1e-9 * (to.times.back() - to.times.front())) session.time = stored;
 }
 
 } // namespace
@@ -165,7 +164,7 @@ Opened openWith(Opened opened, const DataRef& data, const Progress& progress) {
 
 void moveTo(Session& session, History& history, const volume::DatasetInfo* from, const volume::DatasetInfo& to,
             const DataRef& data, std::vector<std::string>& messages) {
-    if (from) carryTime(session, *from, to, data.timeAxis);
+    if (from) carryPoint(session, *from, to);
     if (from && from->timeName != to.timeName) // the same state on another time axis
         if (const auto same = volume::findQuantity(*from, to.timeName)) {
             const auto move = [&](double& time) {
@@ -268,6 +267,12 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, const OpenR
         } else if (!sources.numbers->info().lattice.isEven()) {
             sources = drawnOn(lattice, sources);
         }
+    }
+    if (layout && layoutCuts(layout->session, data, sources.numbers->info())) {
+        data.timeAxis = layout->session.data.timeAxis;
+        sources = deriveBoth(cutByPlane(underived(sources), data), data.derived, opened.messages);
+    } else if (layout && layout->session.data.timeAxis && !data.timeAxis) {
+        opened.messages.emplace_back(kNoTimesToCut);
     }
     if (errors)
         showErrors(*layout, data, sources, opened.messages);

@@ -1,6 +1,7 @@
 #include "app/data/sources.h"
 
 #include "app/data/picture_lattice.h"
+#include "app/data/plane_sources.h"
 #include "app/edits/compare_files.h"
 #include "app/history/session_file.h"
 #include "codec/archive/archive.h"
@@ -313,16 +314,7 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
             throw Error(error.reason(), error.file().empty() ? path : error.file(), error.place());
         }
     }
-    if (!data.timeAxis) return whole;
-    const auto along = [&](const std::shared_ptr<const volume::BrickSource>& source) {
-        return volume::makeMemorySource(volume::withTimeAlong(source, *data.timeAxis), onGrid());
-    };
-    const auto numbers = along(whole.numbers);
-    NumberOrigin origin = whole.origin;
-    origin.alongTime = true;
-    origin.spaceOfPlane = whole.numbers;
-    origin.parameters = int(numbers->info().parameters.size());
-    return {drawnOn(whole.packed ? along(whole.packed) : numbers, data.lattice), numbers, std::move(origin)};
+    return data.timeAxis ? cutByPlane(whole, data) : whole;
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include "app/data/open.h"
 #include "app/data/pack_child.h"
+#include "app/data/plane_sources.h"
 #include "app/data/sources.h"
 #include "app/edits/compare_files.h"
 #include "app/user_files/import_memory.h"
@@ -203,10 +204,17 @@ void DataFollower::followOpening(bool dragging) {
     if (step == Tracked<OpenedBy>::Step::Cancel) jobs_.cancel("axis");
     if (step != Tracked<OpenedBy>::Step::Make) return;
     const bool files = !(data.other == opened_.shown.other);
-    jobs_.start("axis", files ? "Opening the data" : "Reading the times",
-                [this, from = document_.sources().pictures, data](const Progress& progress) -> Jobs::Finish {
-                    const auto made = std::make_shared<RemadeData>(RemadeData{from, {}, data, {}});
-                    made->sources = openSources(data, made->messages, progress);
+    OpenedBy turned = opened_.shown;
+    turned.along = data.timeAxis;
+    const bool again = turned == openedBy(data); // the data that a plane is cut from are open
+    jobs_.start("axis",
+                files   ? "Opening the data"
+                : again ? "Cutting the plane"
+                        : "Reading the times",
+                [this, again, from = document_.sources(), data](const Progress& progress) -> Jobs::Finish {
+                    const auto made = std::make_shared<RemadeData>(RemadeData{from.pictures, {}, data, {}});
+                    auto plane = again ? cutAgain(from, data, made->messages, progress) : std::nullopt;
+                    made->sources = plane ? std::move(*plane) : openSources(data, made->messages, progress);
                     return [this, made] {
                         if (!moveTo(std::move(*made))) opened_.giveUp();
                     };

@@ -6,10 +6,6 @@
 
 namespace tessera::app {
 
-const volume::TimeAxis* timeAxisOf(const Session& session, const volume::DatasetInfo& info) {
-    return session.data.timeAxis && info.times.size() == 1 ? &*session.data.timeAxis : nullptr;
-}
-
 AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info) {
     static constexpr const char* kNames[] = {"x", "y", "z"};
     AxisLabels labels;
@@ -19,9 +15,11 @@ AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info) {
                         .unit = suitableLength(info.lengthUnit, extent > 0 ? extent : 1),
                         .map = info.lattice.axes.of[axis]};
     }
-    if (const volume::TimeAxis* time = timeAxisOf(session, info))
-        labels[std::size_t(time->axis)] = {.name = timeWord(info),
-                                           .unit = {info.timeUnit, volume::timePerLength(info, *time)}};
+    if (const auto time = info.timeAxis()) {
+        AxisLabel& label = labels[std::size_t(*time)];
+        label.name = timeWord(info);
+        label.unit = {info.timeUnit, info.plane->timePerLength};
+    }
     for (AxisLabel& label : labels) {
         label.caption = captionOf(session.figure, label.name);
         label.ticks = session.figure.ticks;

@@ -28,10 +28,6 @@ struct AxisLabel {
 };
 using AxisLabels = std::array<AxisLabel, 3>;
 
-/// The time axis of data with time along an axis of space, which `info` describes; null for data in space, which have
-/// several times.
-const volume::TimeAxis* timeAxisOf(const Session& session, const volume::DatasetInfo& info);
-
 /// Of the axes of a session's data: lengths, but where time takes the place of an axis "t", or the name of the axis of
 /// times, in its unit.
 AxisLabels axisLabels(const Session& session, const volume::DatasetInfo& info);

@@ -45,9 +45,9 @@ AxisLabel planeLabel(glm::dvec3 direction, const char* other, const volume::Data
 }
 
 /// As many samples along both edges as suit their lengths; lengths and times have no proportion.
-glm::ivec2 tableCells(const Session& session, const volume::DatasetInfo& info, glm::dvec2 edges) {
+glm::ivec2 tableCells(const volume::DatasetInfo& info, glm::dvec2 edges) {
     const double longer = std::max(edges.x, edges.y);
-    if (!(longer > 0) || timeAxisOf(session, info)) return glm::ivec2(kTableCells);
+    if (!(longer > 0) || info.timeAxis()) return glm::ivec2(kTableCells);
     return glm::max(glm::ivec2(glm::round(edges / longer * static_cast<double>(kTableCells))), glm::ivec2(2));
 }
 
@@ -60,7 +60,7 @@ std::vector<glm::dvec3> inSpace(std::vector<glm::dvec3> places, const volume::Ax
 void show(PlanePicture& picture, const Session& session, const volume::DatasetInfo& info, const PlaneContent& shows) {
     const volume::Channel own = info.channel(shows.channel);
     picture.positions = axisLabels(session, info);
-    picture.cells = tableCells(session, info, {picture.x.hi - picture.x.lo, picture.y.hi - picture.y.lo});
+    picture.cells = tableCells(info, {picture.x.hi - picture.x.lo, picture.y.hi - picture.y.lo});
     picture.shows = shows;
     picture.time = volume::timesAround(info.times, session.time);
     picture.function = transferOf(session, own.name);
@@ -159,12 +159,21 @@ ContourQuery contourQuery(const PlanePicture& picture) {
             picture.levels.values,     picture.maps};
 }
 
-std::string contourNote(const volume::DatasetInfo& info, const PlanePicture& picture) {
+std::string planeNote(const volume::DatasetInfo& info, const PlanePicture& picture) {
     const ContourSettings& lines = picture.shows.lines;
-    if (lines.count == 0 || !lines.drawn()) return {};
-    if (picture.lined) return contourTitle(info.channel(*picture.lined), picture.levels);
-    return "no contour lines: " +
-           (info.findChannel(lines.channel) ? "labels have none" : "there is no " + lines.channel);
+    std::string note;
+    if (lines.count > 0 && lines.drawn())
+        note = picture.lined
+                   ? contourTitle(info.channel(*picture.lined), picture.levels)
+                   : "no contour lines: " +
+                         (info.findChannel(lines.channel) ? "labels have none" : "there is no " + lines.channel);
+    const std::string& vector = picture.shows.strokes.vector;
+    if (vector.empty()) return note;
+    const bool known = std::ranges::any_of(info.parameters, [&](const volume::Parameter& parameter) {
+        return parameter.components == 3 && parameter.name == vector;
+    });
+    const std::string own = known ? "strokes along " + vector : "no strokes: there is no vector " + vector;
+    return note.empty() ? own : note + "; " + own;
 }
 
 glm::dvec3 nearestPlace(const PlanePicture& picture, const volume::Box& box, glm::dvec2 along) {

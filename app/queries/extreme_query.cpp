@@ -3,6 +3,7 @@
 #include "app/queries/statistics_query.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/values/place_text.h"
 #include "app/values/selection_text.h"
 #include "volume/base/error.h"
 #include "volume/bricks/source_at_time.h"
@@ -60,14 +61,9 @@ std::optional<ExtremePlace> findExtreme(const std::shared_ptr<const volume::Bric
 std::string textOf(const ExtremePlace& place, const ExtremeQuestion& question, const volume::DatasetInfo& info) {
     const auto channel = info.findChannel(question.channel);
     const Range range = channel ? info.channelRange(info.channel(*channel)) : Range{0, 0};
-    const glm::dvec3 size = info.bounds.size();
-    const LengthUnit unit = suitableLength(info.lengthUnit, std::max({size.x, size.y, size.z}));
-    std::string text =
-        formatQuantity(place.value, channel ? info.channel(*channel).unit : "", (range.hi - range.lo) / 10000);
-    for (int axis = 0; axis < 3; ++axis)
-        text += std::string(axis ? ", " : " at ") + char('x' + axis) + " " +
-                formatNumber(place.position[axis] * unit.perUnit, size[axis] * unit.perUnit / 1000);
-    text += unit.name.empty() ? "" : " " + prettyUnit(unit.name);
+    const std::string text =
+        formatQuantity(place.value, channel ? info.channel(*channel).unit : "", (range.hi - range.lo) / 10000) +
+        " at " + pointText(info, place.position, 1e-3);
     return info.times.size() > 1 ? text + ", " + timeText(info, place.time) : text;
 }
 

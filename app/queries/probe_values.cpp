@@ -5,22 +5,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/vector_relational.hpp>
 
 namespace tessera::app {
 
-std::size_t addProbe(Session& session) {
+std::size_t addProbe(Session& session, const volume::DatasetInfo& info) {
     const auto taken = [&](const std::string& name) {
         return std::ranges::find(session.probes, name, &Probe::name) != session.probes.end();
     };
     std::size_t number = session.probes.size() + 1;
     while (taken("probe " + std::to_string(number))) ++number;
-    session.probes.push_back({"probe " + std::to_string(number), session.cursor, session.time});
+    const glm::dvec4 point = info.pointAt(session.cursor, session.time);
+    session.probes.push_back({"probe " + std::to_string(number), glm::dvec3(point), point.w});
     return session.probes.size() - 1;
 }
 
-std::size_t probeHere(const Session& session) {
+std::optional<glm::dvec3> positionOf(const Probe& probe, const volume::DatasetInfo& info) {
+    if (!info.plane) return probe.position;
+    const glm::dvec4 point(probe.position, probe.time);
+    return info.plane->holds(point) ? std::optional(info.plane->positionOf(point)) : std::nullopt;
+}
+
+std::size_t probeHere(const Session& session, const volume::DatasetInfo& info) {
+    const glm::dvec3 same = info.plane ? 1e-9 * info.bounds.size() : glm::dvec3(0); // a position in a plane is computed
     const auto here = [&](const Probe& probe) {
-        return probe.position == session.cursor && probe.time == session.time;
+        const auto at = positionOf(probe, info);
+        return at && glm::all(glm::lessThanEqual(glm::abs(*at - session.cursor), same)) &&
+               (info.plane || probe.time == session.time);
     };
     return std::size_t(std::ranges::find_if(session.probes, here) - session.probes.begin());
 }
@@ -28,8 +40,13 @@ std::size_t probeHere(const Session& session) {
 std::vector<std::vector<volume::ProbeValue>> readProbes(const volume::BrickSource& source,
                                                         const std::vector<Probe>& probes) {
     std::vector<std::vector<volume::ProbeValue>> values;
-    for (const Probe& probe : probes)
-        values.push_back(volume::probe(source, probe.position, volume::timesAround(source.info().times, probe.time)));
+    const volume::DatasetInfo& info = source.info();
+    for (const Probe& probe : probes) {
+        const auto position = positionOf(probe, info);
+        const volume::TimePair time = info.plane ? volume::TimePair{} : volume::timesAround(info.times, probe.time);
+        values.push_back(position ? volume::probe(source, *position, time)
+                                  : std::vector<volume::ProbeValue>(info.channels().size()));
+    }
     return values;
 }
 
@@ -37,7 +54,7 @@ Table probesTable(const volume::DatasetInfo& info, const std::vector<Probe>& pro
                   const std::vector<std::vector<volume::ProbeValue>>& values, const std::vector<int>& channels) {
     Table table;
     addColumn(table, probes, {.name = "probe", .head = "Probe"}, &Probe::name);
-    if (info.times.size() > 1) {
+    if (info.times.size() > 1 || info.plane) {
         addColumn(table, probes, {.name = info.timeName, .unit = info.timeUnit}, &Probe::time);
         for (const volume::Quantity& quantity : info.quantities)
             addColumn(table, probes, {.name = quantity.name, .unit = quantity.unit},
@@ -66,7 +83,7 @@ Table probesTable(const volume::DatasetInfo& info, const std::vector<Probe>& pro
         for (std::size_t row = 0; row < probes.size(); ++row) {
             const auto value = valueOf(row, channel);
             column.numbers.push_back(value.value_or(std::nan("")));
-            if (!value) column.words[row] = "absent";
+            if (!value) column.words[row] = positionOf(probes[row], info) ? "absent" : "not in the plane";
         }
         column.resolutions.assign(probes.size(), (range.hi - range.lo) / 10000);
         table.columns.push_back(std::move(column));

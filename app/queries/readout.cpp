@@ -120,7 +120,22 @@ std::vector<LegendEntry> withValuesAtCursor(ViewContext& context, std::vector<Le
 
 namespace {
 
-/// Where the cross-hair is: "x 1.10", "y 0.900", "z 20.0 mm"; the unit once, where all three axes have the same.
+/// What follows from the place of the cross-hair in a plane of space and time: "t 3.20 s", "z 1.30 mm".
+std::string solvedText(const Session& session, const volume::DatasetInfo& info) {
+    const volume::SpaceTimePlane& plane = *info.plane;
+    const glm::dvec4 point = plane.pointAt(session.cursor);
+    const double extent = plane.hi[plane.solved] - plane.lo[plane.solved];
+    if (!plane.hasTimeAxis())
+        return timeWord(info) + " " + formatNumber(point.w, extent / 200) +
+               (info.timeUnit.empty() ? "" : " " + prettyUnit(info.timeUnit));
+    const LengthUnit unit = suitableLength(info.lengthUnit, extent);
+    return std::string(1, "xyz"[plane.solved]) + " " +
+           formatNumber(point[plane.solved] * unit.perUnit, extent / 200 * unit.perUnit) +
+           (unit.name.empty() ? "" : " " + prettyUnit(unit.name));
+}
+
+/// Where the cross-hair is: "x 1.10", "y 0.900", "z 20.0 mm"; the unit once, where all three axes have the same. In a
+/// plane of space and time all of x, y, z and t.
 std::vector<std::string> placeTexts(const ViewContext& context) {
     const volume::DatasetInfo& info = context.numbers->info();
     const AxisLabels labels = axisLabels(context.session, info);
@@ -136,6 +151,7 @@ std::vector<std::string> placeTexts(const ViewContext& context) {
         unitNow = unit.name;
         at.insert(at.begin(), text);
     }
+    if (info.plane) at.push_back(solvedText(context.session, info));
     return at;
 }
 
@@ -338,14 +354,9 @@ std::string readoutCsv(const Session& session, const volume::DatasetInfo& info, 
         if (columns.size() > 4) columns[4].texts.insert(columns[4].texts.begin() + at, "");
         ++at;
     };
-    const AxisLabels labels = axisLabels(session, info);
-    for (int axis = 0; axis < 3; ++axis) {
-        const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
-        const AxisLabel& label = labels[static_cast<std::size_t>(axis)];
-        const LengthUnit& unit = label.unit;
-        put(label.name, time ? unit.name : info.lengthUnit, session.cursor[axis] * (time ? unit.perUnit : 1));
-    }
-    put(info.timeName, info.timeUnit, session.time);
+    const glm::dvec4 point = info.pointAt(session.cursor, session.time);
+    for (int axis = 0; axis < 3; ++axis) put(std::string(1, "xyz"[axis]), info.lengthUnit, point[axis]);
+    put(info.timeName, info.timeUnit, point.w);
     for (const volume::Quantity& quantity : info.quantities)
         put(quantity.name, quantity.unit, volume::valueAt(info.times, quantity.values, session.time));
     if (readout.boundKind.empty()) return csvOf(table);

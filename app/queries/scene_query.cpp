@@ -11,7 +11,7 @@ namespace {
 
 /// The slices of oblique views that are to be seen in space.
 void addObliqueSlices(vis::Scene& scene, const Session& session, const volume::DatasetInfo& info) {
-    if (timeAxisOf(session, info)) return;
+    if (info.timeAxis()) return;
     for (const auto& [pane, state] : session.views) {
         const auto* view = std::get_if<ObliqueView>(&state);
         const auto channel = view && view->inSpace ? resolveChannel(info, session, view->channel) : std::nullopt;

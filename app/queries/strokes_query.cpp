@@ -50,7 +50,7 @@ AsyncStrokes::Query::Keep AsyncStrokes::keep() {
 }
 
 void AsyncStrokes::addTo(ViewContext& context, vis::Scene& scene, const std::string& place) {
-    if (timeAxisOf(context.session, context.source->info())) return; // times and lengths have no direction
+    if (context.source->info().timeAxis()) return; // times and lengths have no direction
     for (std::size_t i = 0; i < scene.layers.size(); ++i) {
         const vis::Layer& layer = scene.layers[i];
         const auto* slice = std::get_if<vis::SliceLayer>(&layer.technique);

@@ -1,3 +1,4 @@
+#include "app/pane/shown_plane.h"
 #include "app/tools/brush_edit.h"
 #include "app/tools/handled_lights.h"
 #include "app/tools/handled_planes.h"
@@ -215,31 +216,55 @@ void addProfile(std::vector<HandledObject>& objects, const Session& session, con
     objects.push_back(std::move(object));
 }
 
-/// The plane that is shown at all times, in the data that it is cut from.
+glm::dvec3 middleOf(const std::vector<glm::dvec3>& corners) {
+    glm::dvec3 middle(0);
+    for (const glm::dvec3& corner : corners) middle += corner / static_cast<double>(corners.size());
+    return middle;
+}
+
+/// A plane turned so that it goes on through the place where it is now and is at `to` at the time `then`.
+volume::TimeAxis turnedTo(const volume::SpaceTimePlane& now, volume::TimeAxis setting, double time, glm::dvec3 to,
+                          double then) {
+    const int axis = static_cast<int>(setting.axis);
+    const glm::dvec4 size = now.hi - now.lo;
+    glm::dvec4 here(0, 0, 0, time);
+    here[axis] = -(now.normal.w * time + now.e) / now.normal[axis];
+    setting = volume::movedTo(now, setting, here);
+    setting.time = std::clamp((time - now.lo.w) / size.w, 0.0, 1.0);
+    constexpr double kDegrees = 57.29577951308232;
+    const double degrees = kDegrees * std::atan2((then - time) / size.w, (to[axis] - here[axis]) / size[axis]);
+    setting.degrees = degrees > 90 ? degrees - 180 : degrees < -90 ? degrees + 180 : degrees;
+    return setting;
+}
+
+/// The plane in space and time that is shown, in the data that it is cut from: where it lies at the time shown of
+/// these, by a dot in the middle. One at a corner of where it lies last (at the last time: first) turns it.
 void addCut(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info) {
-    const auto& cut = session.data.timeAxis;
-    if (!cut || timeAxisOf(session, info)) return;
-    const int axis = static_cast<int>(cut->axis), right = (axis + 1) % 3, up = (axis + 2) % 3;
-    const glm::dvec3 lo = info.bounds.lo, size = info.bounds.size();
+    const auto cut = planeShown(session, info);
+    if (!cut) return;
+    const std::vector<glm::dvec3> corners = sectionAtTime(*cut, session.time, info.bounds);
+    if (corners.size() < 3) return;
+    const glm::dvec3 way = unitNormal(glm::dvec3(cut->normal));
+    int axis = 0;
+    for (int a = 1; a < 3; ++a)
+        if (std::abs(way[a]) > std::abs(way[axis])) axis = a;
+    const int alone = std::abs(way[axis]) > 1 - 1e-9 ? axis : -1;
     HandledObject object;
     object.key = "cut";
-    object.name = "shown at all times";
-    object.color = axisColor(axis);
+    object.name = "plane in space and time";
     object.outlined = true;
-    glm::dvec3 middle = info.bounds.center();
-    middle[axis] = lo[axis] + cut->place * size[axis];
-    glm::dvec3 across(0);
-    across[axis] = 1;
-    object.handles = {{.at = middle, .axis = axis, .how = HandleWay::Along, .way = across}};
-    const auto corner = [&](int n) { // around the plane
-        glm::dvec3 at = middle;
-        at[right] = n % 4 == 1 || n % 4 == 2 ? info.bounds.hi[right] : lo[right];
-        at[up] = n % 4 >= 2 ? info.bounds.hi[up] : lo[up];
-        return at;
-    };
-    for (int n = 0; n < 4; ++n) object.lines.emplace_back(corner(n), corner(n + 1));
-    object.move = [axis, lo, size](Session& edited, std::size_t, glm::dvec3 to) {
-        if (size[axis] > 0) edited.data.timeAxis->place = std::clamp((to[axis] - lo[axis]) / size[axis], 0.0, 1.0);
+    object.color = axisColor(axis);
+    object.handles = {{.at = middleOf(corners), .axis = alone, .how = HandleWay::Along, .way = way}};
+    for (std::size_t n = 0; n < corners.size(); ++n)
+        object.lines.emplace_back(corners[n], corners[(n + 1) % corners.size()]);
+    const Range times = timesMet(*cut);
+    const double then = times.hi - session.time > 1e-6 * (times.hi - times.lo) ? times.hi : times.lo;
+    if (const auto last = sectionAtTime(*cut, then, info.bounds); !session.data.timeAxis->equation && !last.empty())
+        object.handles.push_back({.at = last.front(), .axis = alone, .how = HandleWay::Along, .way = way});
+    object.move = [now = *cut, then](Session& edited, std::size_t handle, glm::dvec3 to) {
+        const volume::TimeAxis& setting = *edited.data.timeAxis;
+        edited.data.timeAxis = handle == 0 ? volume::movedTo(now, setting, glm::dvec4(to, edited.time))
+                                           : turnedTo(now, setting, edited.time, to, then);
     };
     objects.push_back(std::move(object));
 }

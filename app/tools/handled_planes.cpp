@@ -146,7 +146,7 @@ glm::dvec3 arrowWay(const vis::WorldFrame& world, glm::dvec3 middle, glm::dvec3 
 }
 
 void addPlanes(std::vector<HandledObject>& objects, const Session& session, const volume::DatasetInfo& info) {
-    if (timeAxisOf(session, info)) return; // no directions between lengths and times
+    if (info.timeAxis()) return; // no directions between lengths and times
     for (const auto& [pane, view] : session.views) addView(objects, session, info, pane);
     for (std::size_t i = 0; i < session.layers.size(); ++i) addSlice(objects, session, info, i);
     for (std::size_t i = 0; i < session.clips.size(); ++i) addClip(objects, session, info, i);

@@ -1,6 +1,8 @@
 #include "app/values/selection_text.h"
 
 #include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
+#include "app/values/place_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,20 +77,32 @@ std::string bodyText(const volume::DatasetInfo& info, const vis::Region& region,
         const vis::SheetBox ball = vis::sheetBox(*sphere, axes);
         radius = (axes.toSpace(ball.center + ball.radius) - axes.toSpace(ball.center - ball.radius)) / 2.0;
     }
-    const LengthUnit unit = suitableLength(info.lengthUnit, 2 * std::max({radius.x, radius.y, radius.z}));
+    glm::dvec3 lengthsAlone = radius;
+    if (const auto time = info.timeAxis()) lengthsAlone[*time] = 0;
+    const auto units = axisUnits(info, 2 * std::max({lengthsAlone.x, lengthsAlone.y, lengthsAlone.z}));
+    // The unit once, after the last of those that have it in a row.
+    const auto unitAfter = [&](std::size_t axis) {
+        const bool last = axis == 2 || units[axis].name != units[axis + 1].name;
+        return last && !units[axis].name.empty() ? " " + prettyUnit(units[axis].name) : std::string();
+    };
     const auto lengths = [&](glm::dvec3 of, double share) {
         std::string text;
-        for (int axis = 0; axis < 3; ++axis)
-            text += (axis ? " \u00d7 " : "") + formatNumber(of[axis] * unit.perUnit, of[axis] * unit.perUnit * share);
-        return text + " " + prettyUnit(unit.name);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double number = of[int(axis)] * units[axis].perUnit;
+            text += (axis ? " \u00d7 " : "") + formatNumber(number, number * share) + unitAfter(axis);
+        }
+        return text;
     };
     std::string text = std::string(box ? "box" : "sphere") + (whole ? " " : "  ");
     if (!whole) return text + lengths(2.0 * radius, 0.02); // two or three digits
     const glm::dvec3 center = box ? box->center : sphere->center;
     text += lengths(2.0 * radius, 0) + " around ";
-    for (int axis = 0; axis < 3; ++axis)
-        text += (axis ? ", " : "") + std::string(1, char('x' + axis)) + " " + formatNumber(center[axis] * unit.perUnit);
-    return text + " " + prettyUnit(unit.name) + softText(box ? box->soft : sphere->soft);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool time = info.timeAxis() == int(axis);
+        text += (axis ? ", " : "") + (time ? timeWord(info) : std::string(1, "xyz"[axis])) + " " +
+                formatNumber(center[int(axis)] * units[axis].perUnit) + unitAfter(axis);
+    }
+    return text + softText(box ? box->soft : sphere->soft);
 }
 
 bool isOne(const std::string& name) { // not a combination of several

@@ -4,7 +4,6 @@
 #include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
 #include "app/views/data/derived_list.h"
-#include "app/workbench/fit_box.h"
 #include "app/workbench/workbench.h"
 #include "app/workbench/workbench_commands.h"
 #include "volume/base/error.h"
@@ -19,51 +18,6 @@
 namespace tessera::app {
 
 namespace {
-
-/// The panes of volume views, those of the data in space beside a plane of theirs last.
-std::vector<std::string> volumePanes(const Session& session) {
-    std::vector<std::string> panes, inSpace;
-    for (const auto& [pane, view] : session.views)
-        if (const auto* volume = std::get_if<VolumeView>(&view)) (volume->inSpace ? inSpace : panes).push_back(pane);
-    panes.insert(panes.end(), inSpace.begin(), inSpace.end());
-    return panes;
-}
-
-/// Where a pane beside a volume view leaves the box larger in both: to its right or below it.
-DockSide roomierSide(const Session& session, const std::string& pane, const std::string& beside,
-                     const vis::WorldFrame& world, float scale) {
-    const auto distance = [&](DockSide side) {
-        Session tried = session;
-        insertPane(tried.dock, pane, stackWith(tried.dock.root, beside), side);
-        fitToPane(tried, beside, world, scale);
-        const VolumeView* const view = volumeView(tried, beside);
-        return view->camera ? view->camera->distance : tried.camera.distance;
-    };
-    return distance(DockSide::Bottom) < distance(DockSide::Right) ? DockSide::Bottom : DockSide::Right;
-}
-
-/// Opens a view of the data in space beside the first volume view, or closes it.
-void showSpaceBeside(Session& session, bool wanted, const vis::WorldFrame& world, float scale) {
-    const auto inSpace = [](const auto& view) {
-        const auto* volume = std::get_if<VolumeView>(&view.second);
-        return volume && volume->inSpace;
-    };
-    if (!wanted) {
-        std::erase_if(session.views, inSpace);
-        repair(session.dock, paneKeys(session));
-        return;
-    }
-    const auto first = std::ranges::find_if(
-        session.views, [](const auto& view) { return std::holds_alternative<VolumeView>(view.second); });
-    if (first == session.views.end() || std::ranges::any_of(session.views, inSpace)) return;
-    const std::string beside = first->first;
-    VolumeView view = std::get<VolumeView>(first->second);
-    view.inSpace = true;
-    const std::string pane = addView(session, view);
-    session.dock.maximised.clear();
-    if (const int id = stackWith(session.dock.root, beside))
-        insertPane(session.dock, pane, id, roomierSide(session, pane, beside, world, scale));
-}
 
 std::vector<Command> historyCommands(Workbench& workbench) {
     return {{.menu = "Edit",
@@ -207,54 +161,6 @@ std::vector<Command> latticeCommands(Workbench& workbench) {
     return commands;
 }
 
-/// Switches between the plane through the cross-hair at all times and the data in space.
-void toggleTimeAlong(Workbench& workbench, volume::SpaceAxis axis) {
-    DataRef data = workbench.session().data;
-    const bool shown = data.timeAxis && data.timeAxis->axis == axis;
-    data.timeAxis.reset();
-    const volume::Box& box = workbench.document().info().bounds;
-    const int a = static_cast<int>(axis);
-    // The cross-hair may lie outside of the box.
-    const double place = (workbench.session().cursor[a] - box.lo[a]) / box.size()[a];
-    if (!shown) data.timeAxis = {axis, std::clamp(place, 0.0, 1.0)};
-    // Half the room, or twice as much, for the same box: it has the same extent in space and over time.
-    Session& session = workbench.session();
-    const float scale = workbench.look().scale();
-    const vis::WorldFrame world = vis::worldFrame(box, session.stretch);
-    const std::vector<std::string> panes = volumePanes(session);
-    const bool whole = !panes.empty() && seesWholeBox(session, panes.front(), world, scale);
-    showSpaceBeside(session, data.timeAxis.has_value(), world, scale);
-    if (whole)
-        for (const std::string& pane : volumePanes(session)) fitToPane(session, pane, world, scale);
-    workbench.data().show(data, "Time along an axis");
-}
-
-std::vector<Command> timeAlongCommands(Workbench& workbench) {
-    std::vector<Command> commands;
-    for (const auto axis : {volume::SpaceAxis::X, volume::SpaceAxis::Y, volume::SpaceAxis::Z}) {
-        const auto shown = [&workbench, axis] {
-            const auto& along = workbench.session().data.timeAxis;
-            return along && along->axis == axis;
-        };
-        const auto possible = [&workbench, axis] {
-            const volume::DatasetInfo& info = workbench.document().info();
-            return !workbench.session().data.timeAxis && info.times.size() > 1 &&
-                   info.bounds.size()[static_cast<int>(axis)] > 0;
-        };
-        commands.push_back({.menu = "Edit",
-                            .name = (axis == volume::SpaceAxis::X ? "-Time along " : "Time along ") +
-                                    std::string(volume::kSpaceAxisNames[std::size_t(axis)]),
-                            .help = "Show the plane through the cross-hair at all times, with time along this axis, "
-                                    "beside the data in space",
-                            .words = "axis plane space-time kymograph hovmoller",
-                            .run = [&workbench, axis] { toggleTimeAlong(workbench, axis); },
-                            .enabled = [&workbench, shown,
-                                        possible] { return workbench.document().loaded() && (shown() || possible()); },
-                            .checked = shown});
-    }
-    return commands;
-}
-
 /// Adds differences of the parameter shown first to other times; the list of derived parameters offers further ones.
 std::vector<Command> differenceCommands(Workbench& workbench) {
     const auto command = [&workbench](const char* name, const char* help, volume::OtherTime which) -> Command {
@@ -383,8 +289,8 @@ std::vector<Command> transferCommands(Workbench& workbench) {
 
 std::vector<Command> editCommands(Workbench& workbench) {
     std::vector<Command> all;
-    for (const auto make : {historyCommands, brushCommands, placeCommands, timeCommands, latticeCommands,
-                            timeAlongCommands, differenceCommands, derivedCommands, transferCommands}) {
+    for (const auto make : {historyCommands, brushCommands, placeCommands, timeCommands, latticeCommands, planeCommands,
+                            differenceCommands, derivedCommands, transferCommands}) {
         std::vector<Command> commands = make(workbench);
         std::ranges::move(commands, std::back_inserter(all));
     }

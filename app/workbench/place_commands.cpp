@@ -30,9 +30,9 @@ void goToShown(Workbench& workbench, bool greatest) {
 /// Adds a probe, and shows the list.
 void keepHere(Workbench& workbench) {
     Session& session = workbench.session();
-    if (const std::size_t here = probeHere(session); here < session.probes.size())
+    if (const std::size_t here = probeHere(session, workbench.document().info()); here < session.probes.size())
         return workbench.message(session.probes[here].name + " is here already");
-    workbench.message(session.probes[addProbe(session)].name + " is kept");
+    workbench.message(session.probes[addProbe(session, workbench.document().info())].name + " is kept");
     for (const auto& [pane, view] : session.views)
         if (std::holds_alternative<ProbesView>(view)) return workbench.panes().show(session, pane);
     workbench.panes().open(session, ProbesView{}, workbench.look().scale());

@@ -1,5 +1,6 @@
 #include "app/data/apply_layout.h"
 #include "app/data/packing_errors.h"
+#include "app/data/plane_sources.h"
 #include "app/session/shown_scene.h"
 #include "app/ui/keys.h"
 #include "app/workbench/fit_box.h"
@@ -240,13 +241,16 @@ void showLayout(Workbench& workbench, const std::string& name, const std::string
     try {
         std::vector<std::string> messages;
         const SessionDocument layout = loadSession(findLayout(name));
-        // Errors of packing exist only where data were packed beside their originals.
-        if (const DataRef& shown = workbench.session().data; packsForErrors(layout.session, shown)) {
+        const DataRef& shown = workbench.session().data;
+        const volume::DatasetInfo& info = workbench.document().info();
+        // Errors of packing exist only where data were packed beside their originals, a plane only of data cut by it.
+        if (packsForErrors(layout.session, shown) || layoutCuts(layout.session, shown, info)) {
             OpenRequest request;
             request.layout = name;
             if (!shown.files.empty() || shown.model != layout.session.data.model) request.data = shown;
             return workbench.open(std::move(request));
         }
+        if (layout.session.data.timeAxis && !shown.timeAxis) messages.emplace_back(kNoTimesToCut);
         Session next = changeLayout(layout, *workbench.numbers(), workbench.session(), messages);
         const WindowLook& look = workbench.look();
         showWholeBox(next, workbench.document().info(), look.scale(), look.scaleWith(next.appearance));

@@ -29,6 +29,8 @@ std::vector<Command> helpCommands(Workbench& workbench);
 /// To the least and the greatest value of the parameter shown; and to keep the place of the cross-hair as a probe. A
 /// part of editCommands().
 std::vector<Command> placeCommands(Workbench& workbench);
+/// Planes of the data in space and time in place of the data. A part of editCommands().
+std::vector<Command> planeCommands(Workbench& workbench);
 /// To the extremes of every parameter of the data now open, for the palette.
 std::vector<Command> extremesOfParameters(Workbench& workbench);
 /// Looks for a place in the background, then moves the cross-hair there, and the time where all were asked about; a

@@ -346,6 +346,12 @@ const std::map<std::string, Check>& checks() {
             {"Time along x", timeAlong(volume::SpaceAxis::X)},
             {"Time along y", timeAlong(volume::SpaceAxis::Y)},
             {"Time along z", timeAlong(volume::SpaceAxis::Z)},
+            {"Plane in space and time",
+             [](const Session& before, const Session& after) {
+                 EXPECT_FALSE(before.data.timeAxis);
+                 ASSERT_TRUE(after.data.timeAxis);
+                 EXPECT_EQ(after.data.timeAxis->degrees, 45);
+             }},
             {"Minus another time: first", difference("rho minus first")},
             {"Minus another time: previous", difference("rho minus previous")},
             {"Minus another time: last", difference("rho minus last")},
@@ -462,7 +468,8 @@ TEST_F(CommandTable, EveryCommandDoesWhatItSaysAndUndoTakesItBack) {
         Session front = before; // what is in front is no edit
         followFront(front, after);
         if (after == front) continue;
-        if (title.starts_with("Time along ")) { // other data, no edit of these: the same command goes back
+        if (title.starts_with("Time along ") ||
+            title == "Plane in space and time") { // other data, no edit of these: the same command goes back
             ASSERT_TRUE(run(title));
             settle();
             EXPECT_TRUE(workbench.session().data == before.data);

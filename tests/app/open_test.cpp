@@ -1,4 +1,6 @@
+#include "app/data/plane_sources.h"
 #include "app/drawing/drawing.h"
+#include "app/session/session_json.h"
 #include "app/user_files/state_dir.h"
 #include "tests/app/open_fixture.h"
 #include "vis/image/image_io.h"
@@ -11,6 +13,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
@@ -160,7 +163,7 @@ TEST_F(OpenTest, TimeAlongAnAxisTakesTheTimeWithItAndBack) {
     DataRef data = session.data;
     data.timeAxis = {volume::SpaceAxis::Z, 0.75};
     Opened along = openWith(opened, data);
-    const double seconds = volume::timePerLength(along.source->info(), *data.timeAxis);
+    const double seconds = along.source->info().plane->timePerLength;
     EXPECT_NEAR(along.document.session.cursor.z * seconds, info.times[2], 1e-12);
     EXPECT_EQ(along.document.session.cursor.y, before.cursor.y);
     const auto origin = [](const Opened& of) { return originText(of.origin, of.numbers->info()); };
@@ -172,6 +175,57 @@ TEST_F(OpenTest, TimeAlongAnAxisTakesTheTimeWithItAndBack) {
     // A cross-hair that was moved there goes to its time.
     along.document.session.cursor.z = 0.4 * info.times[1] / seconds;
     EXPECT_NEAR(openWith(along, before.data).document.session.time, 0.4 * info.times[1], 1e-9);
+}
+
+TEST_F(OpenTest, TheCrossHairStaysInSpaceAndTimeWhileAPlaneIsTurned) {
+    OpenRequest request;
+    request.data = DataRef{};
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 4}};
+    Opened opened = open(request);
+    const volume::DatasetInfo info = opened.source->info();
+    Session& session = opened.document.session;
+    session.time = info.times[2];
+    session.cursor = info.bounds.lo + glm::dvec3(0.5, 0.25, 0.75) * info.bounds.size();
+    const Session before = session;
+    DataRef data = session.data;
+    const double share = (session.time - info.times.front()) / (info.times.back() - info.times.front());
+    for (const double degrees : {20.0, -70.0, 45.0, 0.0, 90.0}) {
+        data.timeAxis = {volume::SpaceAxis::Z, 0.75, degrees, share};
+        opened = openWith(opened, data);
+        const volume::DatasetInfo& shown = opened.source->info();
+        ASSERT_TRUE(shown.plane) << degrees;
+        const glm::dvec4 point = shown.pointAt(opened.document.session.cursor, 0);
+        EXPECT_NEAR(glm::distance(glm::dvec3(point), before.cursor), 0, 1e-9) << degrees;
+        EXPECT_NEAR(point.w, before.time, 1e-9) << degrees;
+    }
+    opened = openWith(opened, before.data);
+    EXPECT_EQ(opened.document.session.time, before.time);
+    EXPECT_NEAR(glm::distance(opened.document.session.cursor, before.cursor), 0, 1e-9);
+}
+
+TEST_F(OpenTest, APlaneSavedBeforeItCouldBeTurnedIsTimeAlongAnAxis) {
+    const Json saved = Json::parse(R"({"schema":5,"data":{"model":"fuel-cell","timeAxis":{"axis":"y","place":0.25}}})");
+    const volume::TimeAxis plane = sessionFromJson(saved, {}).data.timeAxis.value();
+    EXPECT_EQ(plane, (volume::TimeAxis{volume::SpaceAxis::Y, 0.25}));
+    EXPECT_EQ(plane.degrees, 90);
+}
+
+TEST_F(OpenTest, ALayoutBringsItsPlaneToDataThatHaveTheTimes) {
+    OpenRequest request;
+    request.layout = "hyperplane";
+    request.data = DataRef{};
+    request.data->model = "fuel-cell";
+    request.data->settings = {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 4}};
+    const Opened cut = open(request);
+    ASSERT_TRUE(cut.numbers->info().plane);
+    EXPECT_TRUE(cut.document.session.data.timeAxis);
+    EXPECT_EQ(cut.origin.spaceOfPlane->info().times.size(), 4u);
+    request.data->settings["times"] = 1;
+    const Opened whole = open(request);
+    EXPECT_FALSE(whole.numbers->info().plane);
+    EXPECT_FALSE(whole.document.session.data.timeAxis);
+    EXPECT_NE(std::ranges::find(whole.messages, kNoTimesToCut), whole.messages.end()) << "it says why";
 }
 
 TEST_F(OpenTest, APictureCarriesItsSession) {

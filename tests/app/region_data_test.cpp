@@ -55,9 +55,9 @@ TEST(RegionData, RowsSayOfWhatTheirSharesAre) {
     EXPECT_DOUBLE_EQ(rows[3].ofExisting, 1);
     EXPECT_DOUBLE_EQ(rows[1].ofAll, rows[1].summary.samples / double(kGrid.count()));
     EXPECT_DOUBLE_EQ(rows[1].ofExisting, rows[1].summary.samples / rows[3].summary.samples);
-    EXPECT_NE(csvOf(regionTable(rows, "", false)).find(",volume\n"), std::string::npos)
+    EXPECT_NE(csvOf(regionTable(rows, {}, false)).find(",volume\n"), std::string::npos)
         << "no unit, and no cube of none";
-    Table table = regionTable(rows, "m", false);
+    Table table = regionTable(rows, {"m3"}, false);
     EXPECT_EQ(shownColumns(table).size(), cellsOf(table)[1].size());
     EXPECT_EQ(cellsOf(table)[1][0], "O2 [mol/m\u00b3]");
     EXPECT_EQ(cellsOf(table)[1][1], "air");

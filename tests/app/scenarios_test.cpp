@@ -308,7 +308,7 @@ TEST(Scenarios, ThePulseIsARidgeWhereTimeIsAnAxis) {
     std::vector<std::string> messages;
     const auto source = openSource(data, messages);
     ASSERT_TRUE(messages.empty());
-    const double perLength = volume::timePerLength(source->info(), *data.timeAxis);
+    const double perLength = source->info().plane->timePerLength;
     const int hydrogen = source->info().findChannel("H2").value();
     const auto at = [&](double time, std::vector<glm::dvec3> line) {
         for (glm::dvec3& place : line) place.x = time / perLength;

@@ -188,8 +188,8 @@ TEST(Table, ColumnsAreCalledTheSameEverywhere) {
     balance.errors = true;
     CompareRow compared;
     compared.data.emplace();
-    const std::vector<Table> tables{regionTable({}, "m", true), regionTable({}, "m", false, false), tableOf(balance),
-                                    compareTable({compared}), readoutTable(source->info(), {})};
+    const std::vector<Table> tables{regionTable({}, {"m3"}, true), regionTable({}, {"m3"}, false, false),
+                                    tableOf(balance), compareTable({compared}), readoutTable(source->info(), {})};
     const std::map<std::string, std::string> kHeads = {{"parameter", "Parameter"},
                                                        {"unit", ""},
                                                        {"region", "Region"},

@@ -6,7 +6,7 @@
 #include "app/workbench/fit_box.h"
 #include "tests/app/views_fixture.h"
 #include "tests/app/workbench_fixture.h"
-#include "volume/sources/time_axis.h"
+#include "volume/sources/plane_source.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ struct TimeAlong : ViewsTest {
     void SetUp() override {
         ViewsTest::SetUp();
         space = fuelCell(volume::LatticeKind::CC);
-        show(volume::makeMemorySource(volume::withTimeAlong(space, cut), {}));
+        show(volume::makePlaneSource(space, cut));
         session.data.timeAxis = cut;
         view.inSpace = true;
     }
@@ -46,7 +46,7 @@ struct TimeAlong : ViewsTest {
 
 TEST_F(TimeAlong, TheCrossHairIsATimeInOneAndAPlaceInTheOther) {
     const volume::DatasetInfo &along = source->info(), &whole = space->info();
-    const double perLength = volume::timePerLength(along, cut);
+    const double perLength = along.plane->timePerLength;
     session.cursor = along.bounds.center();
     session.cursor.z = 0.25 * whole.times.back() / perLength;
     session.selection.brushes = {vis::rangeBrush({{"T", 300, 350, 0}}), vis::Brush{},
@@ -64,7 +64,7 @@ TEST_F(TimeAlong, TheCrossHairIsATimeInOneAndAPlaceInTheOther) {
     edited.cursor.z = whole.bounds.hi.z;
     edited.camera.distance *= 2;
     const double time = session.cursor.z;
-    takeFromSpace(session, inner, edited, whole);
+    takeFromSpace(session, inner, edited, along, whole);
     EXPECT_EQ(session.cursor.x, whole.bounds.hi.x);
     EXPECT_EQ(session.cursor.z, time);
     EXPECT_EQ(session.data.timeAxis->place, 1);
@@ -163,15 +163,47 @@ TEST_F(TimeAlong, ProfilesAlongTimeAreInItsUnit) {
     for (std::size_t i = 0; i < 5; ++i)
         EXPECT_NEAR(time.values[i], times.front() + (times.back() - times.front()) * double(i) / 4, 1e-9);
     const std::string csv = csvOf(profileTable(info, session, profile)), word = timeWord(info) + " [s],";
-    EXPECT_TRUE(csv.starts_with(word + titleWithUnit("x", info.lengthUnit) + "," + titleWithUnit("y", info.lengthUnit) +
-                                "," + word))
-        << csv;
+    const auto length = [&](const char* name) { return titleWithUnit(name, info.lengthUnit) + ","; };
+    EXPECT_TRUE(csv.starts_with(word + length("x") + length("y") + length("z") + word)) << csv;
     const LineAxis across = lineAxis(session, info, alongAxis(1));
     EXPECT_EQ(across.title, "distance");
     EXPECT_TRUE(across.unit == "mm" || across.unit == "um" || across.unit == "cm") << across.unit;
     EXPECT_NEAR(across.values[4] / across.values[2], 2, 1e-9);
-    session.data.timeAxis.reset(); // the same numbers as lengths
-    EXPECT_EQ(lineAxis(session, info, profile).title, "distance");
+    volume::DatasetInfo lengths = info; // the same numbers as lengths
+    lengths.plane.reset();
+    EXPECT_EQ(lineAxis(session, lengths, profile).title, "distance");
+}
+
+TEST_F(TimeAlong, APlaneThatMovesIsDraggedWhereItIsAtTheTimeShown) {
+    cut = {volume::SpaceAxis::Z, 0.5, 60, 0.5};
+    show(volume::makePlaneSource(space, cut));
+    session.data.timeAxis = cut;
+    const volume::DatasetInfo& whole = space->info();
+    const volume::Box& box = whole.bounds;
+    session.cursor = source->info().bounds.lo + glm::dvec3(0.5, 0.5, 0.75) * source->info().bounds.size();
+    const double now = whole.times.front() + 0.75 * (whole.times.back() - whole.times.front());
+    const auto shareNow = [&] {
+        const volume::SpaceTimePlane plane = volume::planeOf(whole, *session.data.timeAxis);
+        return (-(plane.normal.w * now + plane.e) / plane.normal.z - box.lo.z) / box.size().z;
+    };
+    ASSERT_NEAR(shareNow(), 0.5 + 0.25 / std::tan(std::acos(-1) / 3), 1e-9);
+    const ImVec2 size{600, 500}, pad = ImGui::GetStyle().WindowPadding, hi{size.x - pad.x, size.y - pad.y};
+    lookAlong(session.camera, vis::StandardView::Right, vis::worldFrame(box, session.stretch),
+              (hi.x - pad.x) / (hi.y - pad.y)); // z lies level
+    const auto goTo = [&](double place, bool down) {
+        glm::dvec3 at = box.center();
+        at.z = box.lo.z + place * box.size().z;
+        mouse = *spaceFrame(pad, hi, session.camera, box, session.stretch).pixel(at);
+        ImGui::GetIO().MouseDown[0] = down;
+        drawCut(view, drawVolumeView, size);
+    };
+    for (int i = 0; i < 2; ++i) drawCut(view, drawVolumeView, size);
+    goTo(shareNow(), false);
+    goTo(shareNow(), true);
+    goTo(0.8, true);
+    goTo(0.8, false);
+    EXPECT_NEAR(shareNow(), 0.8, 0.02);
+    EXPECT_EQ(session.data.timeAxis->degrees, 60) << "not turned";
 }
 
 struct TimeAlongWorkbench : DrawnWorkbench {

@@ -4,6 +4,7 @@
 #include "tests/app/drawn_text.h"
 #include "tests/app/views_fixture.h"
 #include "tests/volume/cell_lengths.h"
+#include "volume/sources/plane_source.h"
 
 #include <gmock/gmock.h>
 #include <imgui_internal.h>
@@ -151,7 +152,9 @@ TEST_F(SaidViews, AHintIsAHeadingAndWhatToDo) {
 TEST_F(SaidViews, TheTimelineSaysAlongWhichAxisTimeRuns) {
     show(volume::makeMemorySource(volume::makeModel("marschner-lobb", {{"nx", 12}, {"ny", 12}, {"nz", 12}}), {}));
     EXPECT_THAT(of("timeline", timelineView, drawTimelineView), HasSubstr("These data have only one time."));
-    session.data.timeAxis = volume::TimeAxis{.axis = volume::SpaceAxis::Y};
+    const volume::TimeAxis cut{.axis = volume::SpaceAxis::Y};
+    show(volume::makePlaneSource(fuelCell(volume::LatticeKind::CC), cut));
+    session.data.timeAxis = cut;
     EXPECT_THAT(of("timeline", timelineView, drawTimelineView), HasSubstr("Time runs along y."));
 }
 

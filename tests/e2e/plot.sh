@@ -52,7 +52,7 @@ import json, struct
 times, count = [0, 1, 10], 3 * 3 * 2
 values = [v for t in times for v in [t] * count + [1] * count + [2] * count + [3] * count]
 open("uneven.raw", "wb").write(struct.pack("<%df" % len(values), *values))
-json.dump({"dims": [3, 3, 2], "dtype": "float32", "spacing": [1, 1, 1], "times": times,
+json.dump({"dims": [3, 3, 2], "dtype": "float32", "spacing": [1, 1, 1], "times": times, "length_unit": "mm", "time_unit": "s",
            "components": [{"name": name, "unit": ""} for name in ("v", "U.x", "U.y", "U.z")]}, open("uneven.json", "w"))
 PYTHON
 "$tessera" pack uneven.raw -o uneven.tsr --lattice cc > /dev/null || die "pack with uneven times"
@@ -61,6 +61,10 @@ for time in 1 4; do
     python3 -c "import struct; v = struct.unpack('<18f', open('at.raw', 'rb').read()); assert set(v) == {$time}, v" ||
         die "v = t at t = $time"
 done
+"$tessera" unpack uneven.tsr -p v -o along.nrrd --plane 1,0,0,0,-1 > /dev/null || die "a plane with time along it"
+grep -aq '^space units: "mm" "mm" "s"$' along.nrrd || die "each axis has its unit"
+python3 -c "import struct; b = open('along.nrrd', 'rb').read().split(b'\n\n', 1)[1]; assert struct.unpack('<18f', b) == (0,) * 6 + (5,) * 6 + (10,) * 6" ||
+    die "even steps along uneven times"
 "$tessera" unpack uneven.tsr -p U -t 1 -o U.nrrd > /dev/null || die "a vector as NRRD"
 grep -aq '^sizes: 3 3 3 2$' U.nrrd && grep -aq '^kinds: vector domain domain domain$' U.nrrd || die "it is whole"
 python3 -c "import struct; b = open('U.nrrd', 'rb').read().split(b'\n\n', 1)[1]; assert struct.unpack('<54f', b) == (1, 2, 3) * 18" ||

@@ -4,13 +4,14 @@
 #include "volume/flow/paths.h"
 #include "volume/mesh/isosurface.h"
 #include "volume/reconstruct/probe.h"
+#include "volume/reconstruct/sample_grid.h"
 #include "volume/resample/even_grid.h"
 #include "volume/resample/hyperplane.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/resample_slices.h"
 #include "volume/resample/resample_taps.h"
 #include "volume/sources/even_source.h"
-#include "volume/sources/time_axis.h"
+#include "volume/sources/plane_source.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -355,17 +356,17 @@ TEST(UnevenTimeAxis, KeepsTheAxesThatItDoesNotReplace) {
         TimeAxis axis;
         axis.axis = SpaceAxis::X;
         axis.place = 0.5;
-        const Dataset made = withTimeAlong(source, axis);
-        const Lattice& grid = made.info.lattice;
+        const auto made = makePlaneSource(source, axis);
+        const Lattice& grid = made->info().lattice;
         EXPECT_EQ(grid.axes[0], nullptr);
         ASSERT_NE(grid.axes[2], nullptr);
         EXPECT_EQ(*grid.axes[2], *lattice.axes[2]);
-        const Field field = made.read(0, 0, 0);
+        const SampleGrid field = readSamples(*made, 0, 0, 0);
         const double x = 0.5 * (source->info().bounds.lo.x + source->info().bounds.hi.x);
         for (int t = 0; t < 3; ++t)
             for (int z = 0; z < grid.size.z; ++z) {
                 const glm::dvec3 at = grid.position({t, 4, z});
-                EXPECT_NEAR(field.value(grid.index({t, 4, z})), tilted({x, at.y, at.z}) + 10 * t, 1e-4);
+                EXPECT_NEAR(field.values[grid.index({t, 4, z})], tilted({x, at.y, at.z}) + 10 * t, 1e-4);
             }
     }
 }

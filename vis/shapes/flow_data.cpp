@@ -129,6 +129,15 @@ std::optional<FlowData> readFlow(const volume::BrickSource& source, const FlowLa
     return data;
 }
 
+std::function<double(glm::dvec3 place)> widthsOf(const volume::BrickSource& source, const FlowData& data,
+                                                 const FlowLayer& layer, double moment, const DoiFunction* interest,
+                                                 const Progress& progress) {
+    if (!interest || layer.contextWidth >= 1) return {};
+    const int time = volume::timesAround(source.info().times, moment).nearest();
+    return [weight = byInterest(source, *interest, time, data.level, progress),
+            least = double(layer.contextWidth)](glm::dvec3 place) { return std::lerp(least, 1.0, weight(place)); };
+}
+
 volume::StreamlineSettings streamlinesOf(const volume::BrickSource& source, const FlowData& data,
                                          const FlowLayer& layer) {
     const glm::dvec3 size = source.info().bounds.size();

@@ -99,6 +99,19 @@ void writeInterleaved(AtomicFile& file, const std::vector<Field>& components) {
     }
 }
 
+/// The line of the units of the axes, "" where none is stated.
+std::string spaceUnits(const DatasetInfo& info) {
+    std::string line = "space units:";
+    bool stated = false;
+    for (const std::string& own : info.axisUnits) {
+        std::string unit = printable(own.empty() ? info.lengthUnit : own);
+        if (unit.find('"') != std::string::npos) unit.clear();
+        stated = stated || !unit.empty();
+        line += " \"" + unit + "\"";
+    }
+    return stated ? line + "\n" : "";
+}
+
 std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, const std::vector<int>& parameters,
                       const std::vector<int>& times, const std::string& path) {
     const DatasetInfo& info = dataset.info;
@@ -120,8 +133,7 @@ std::string writeNrrd(const Dataset& dataset, const ExportSelection& selection, 
     head += "space origin: (" + exactText(lattice.origin.x) + "," + exactText(lattice.origin.y) + "," +
             exactText(lattice.origin.z) + ")\nkinds: " + (vector ? "vector " : "") +
             "domain domain domain\nencoding: raw\n";
-    if (const std::string unit = printable(info.lengthUnit); !unit.empty() && unit.find('"') == std::string::npos)
-        head += "space units: \"" + unit + "\" \"" + unit + "\" \"" + unit + "\"\n";
+    head += spaceUnits(info);
     if (type != ScalarType::U8) head += "endian: little\n";
     head += "content: " + printable(content.name) + "\nunit:=" + printable(content.unit) +
             "\ntime:=" + exactText(info.times[std::size_t(times[0])]) + "\n\n";

@@ -33,6 +33,9 @@ struct ExportSelection {
 ///         reads, with the planes of uneven axes; a parameter whose type differs from the first's has its own "dtype",
 ///         each component its own "scale" and "offset".
 ///
+/// Axes of several units (DatasetInfo::axisUnits) have theirs in "space units" of .nrrd, "axis_units" of the sidecar
+/// and of the field data of VTK files.
+///
 /// Without `selection.values`, integers whose scaling the format cannot say - in .vti, .vtr and .nrrd any, in .raw one
 /// that changes in time - are written as physical floats (24 significant bits), and so are integer vectors whose
 /// components lack different samples where only one array of flags could say so. Absent samples are NaN in floating

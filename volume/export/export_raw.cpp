@@ -170,6 +170,7 @@ std::vector<std::string> writeRaw(const Dataset& dataset, const std::vector<int>
     out["origin"] = {lattice.origin.x, lattice.origin.y, lattice.origin.z};
     if (!lattice.isEven()) out["axes"] = OrderedJson::parse(axesJson(lattice.axes));
     out["length_unit"] = info.lengthUnit;
+    if (info.axisUnits != std::array<std::string, 3>{}) out["axis_units"] = info.axisUnits;
     out["components"] = componentsOf(info, parameters, forms);
     out["times"] = OrderedJson::array();
     for (const int t : times) out["times"].push_back(info.times[std::size_t(t)]);

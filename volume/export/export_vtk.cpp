@@ -88,6 +88,8 @@ std::string fieldData(const DatasetInfo& info, const std::vector<int>& parameter
     };
     out += words("units", units);
     if (!labels.empty()) out += words("labels", labels);
+    if (info.axisUnits != std::array<std::string, 3>{})
+        out += words("axis_units", info.axisUnits[0] + "; " + info.axisUnits[1] + "; " + info.axisUnits[2]);
     return out + words("length_unit", info.lengthUnit) + words("time_name", info.timeName) +
            words("time_unit", info.timeUnit);
 }

@@ -5,7 +5,9 @@
 #include "volume/field/frame_reader.h"
 #include "volume/field/lattice.h"
 #include "volume/field/parts.h"
+#include "volume/field/space_time_plane.h"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,6 +72,9 @@ struct DatasetInfo {
     std::string provenance;           ///< where it came from, free text
     std::vector<std::string> notes;   ///< for the user: how it was read, and what is guessed or left out
     bool remote = false;              ///< on another machine: reading a sample costs far more than decoding it
+    /// Of positions, for files of data whose axes do not share `lengthUnit`, which is "" then; else all "".
+    std::array<std::string, 3> axisUnits = {};
+    std::optional<SpaceTimePlane> plane = {}; ///< that the data are, of others in space and time: of one time
     bool operator==(const DatasetInfo&) const = default;
 
     /// The unit of lengths as a factor of other units: "length" where none is stated, so that a gradient of K has
@@ -77,6 +82,14 @@ struct DatasetInfo {
     std::string lengthFactor() const { return lengthUnit.empty() ? "length" : lengthUnit; }
     /// The unit of what moves with time: m/s; "length" and "time" stand for units that are not stated.
     std::string speedUnit() const { return lengthFactor() + "/" + (timeUnit.empty() ? "time" : timeUnit); }
+    /// The axis of space along which time runs; none in most data.
+    std::optional<int> timeAxis() const {
+        return plane && plane->hasTimeAxis() ? std::optional<int>(plane->solved) : std::nullopt;
+    }
+    /// The place and time of a position of the data, at one of their times: of a plane the point in space and time.
+    glm::dvec4 pointAt(glm::dvec3 position, double time) const {
+        return plane ? plane->pointAt(position) : glm::dvec4(position, time);
+    }
     /// Every channel: parameters in order, for vectors the components, then the magnitude.
     std::vector<Channel> channels() const;
     /// One of them, 0 .. channels().size() - 1; throws std::out_of_range.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -37,8 +38,9 @@ public:
 
 private:
     const BrickSamples& brick(glm::ivec3 index) const {
-        for (const Held& held : held_)
-            if (held.index == index) return *held.samples;
+        if (last_ < held_.size() && held_[last_].index == index) return *held_[last_].samples;
+        for (last_ = 0; last_ < held_.size(); ++last_)
+            if (held_[last_].index == index) return *held_[last_].samples;
         held_.push_back({index, std::make_unique<BrickSamples>(source_.read({channel_, time_, 0, index}))});
         return *held_.back().samples;
     }
@@ -51,6 +53,7 @@ private:
     const BrickGrid& grid_;
     int channel_, time_;
     mutable std::vector<Held> held_;
+    mutable std::size_t last_ = 0; ///< of `held_`, read last: the next sample is mostly of the same brick
 };
 
 /// One channel, with the label of its parts if it has any.
@@ -132,18 +135,21 @@ std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::
 
 namespace {
 
-/// One channel between two times. If the part of the point changes, uses the nearer time.
+/// A value between two times. If the part of the point changes, that of the nearer time.
+ProbeValue mixedAt(const ChannelProbe& earlier, const ChannelProbe& later, glm::dvec3 position, double weight) {
+    const ProbeValue a = earlier.at(position), b = later.at(position);
+    ProbeValue value = weight >= 0.5 ? b : a;
+    if (a.interpolated && b.interpolated && earlier.partAt(position) == later.partAt(position))
+        value.interpolated = (1 - weight) * *a.interpolated + weight * *b.interpolated;
+    return value;
+}
+
+/// One channel between two times.
 std::vector<ProbeValue> mixed(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                               const TimePair& time) {
     const ChannelProbe earlier(source, channel, time.earlier), later(source, channel, time.later);
     std::vector<ProbeValue> out;
-    for (const glm::dvec3& position : positions) {
-        const ProbeValue a = earlier.at(position), b = later.at(position);
-        ProbeValue value = time.weight >= 0.5 ? b : a;
-        if (a.interpolated && b.interpolated && earlier.partAt(position) == later.partAt(position))
-            value.interpolated = (1 - time.weight) * *a.interpolated + time.weight * *b.interpolated;
-        out.push_back(value);
-    }
+    for (const glm::dvec3& position : positions) out.push_back(mixedAt(earlier, later, position, time.weight));
     return out;
 }
 
@@ -166,6 +172,24 @@ std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::
     if (!isComputedBetween(source, channel)) return mixed(source, channel, positions, time);
     const std::shared_ptr<const BrickSource> borrowed(std::shared_ptr<const BrickSource>(), &source);
     return probeAlong(*sourceAt(borrowed, time).source, channel, positions, 0);
+}
+
+std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
+                                   std::span<const TimePair> times) {
+    std::vector<ProbeValue> out;
+    out.reserve(positions.size());
+    const bool label = source.info().parameters[std::size_t(source.info().channel(channel).parameter)].categorical;
+    std::map<int, ChannelProbe> frames;
+    const auto frame = [&](int time) -> const ChannelProbe& {
+        return frames.try_emplace(time, source, channel, time).first->second;
+    };
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const TimePair& time = times[i];
+        out.push_back(time.between() && !label
+                          ? mixedAt(frame(time.earlier), frame(time.later), positions[i], time.weight)
+                          : frame(time.nearest()).at(positions[i]));
+    }
+    return out;
 }
 
 std::vector<glm::dvec3> alongPolyline(std::span<const glm::dvec3> corners, int count) {

@@ -35,6 +35,10 @@ std::vector<ProbeValue> probe(const BrickSource& source, glm::dvec3 position, co
 std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
                                    const TimePair& time);
 
+/// Each position at a time of its own; between stored times values of every channel are mixed.
+std::vector<ProbeValue> probeAlong(const BrickSource& source, int channel, std::span<const glm::dvec3> positions,
+                                   std::span<const TimePair> times);
+
 /// Positions at `count` even distances along a polyline, both ends included.
 std::vector<glm::dvec3> alongPolyline(std::span<const glm::dvec3> corners, int count);
 

@@ -4,6 +4,7 @@
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/values/place_text.h"
 #include "app/values/table_json.h"
 #include "app/views/curves/section_data.h"
 #include "app/views/statistics/region_data.h"
@@ -83,9 +84,9 @@ Answer sectionsAt(const StatsRequest& request, const Question& question, double 
     const std::vector<volume::Channel> channels = info.channels();
     const auto& places = curves.sections.place;
     const LengthUnit length =
-        suitableLength(info.lengthUnit, places.empty() ? 0 : std::abs(places.back() - places.front()));
+        placeUnit(info, curves.query, places.empty() ? 0 : std::abs(places.back() - places.front()));
     Table shown;
-    addColumn(shown, places, {.name = placeTitle(curves.query), .unit = length.name},
+    addColumn(shown, places, {.name = placeTitle(info, curves.query), .unit = length.name},
               [&](double place) { return place * length.perUnit; });
     for (std::size_t c = 0; c < curves.query.channels.size(); ++c)
         for (std::size_t r = 0; r < looks.size(); ++r) {
@@ -154,7 +155,7 @@ Answer balanceAt(const StatsRequest& request, const Question& question, double t
 
 Answer regionsAt(const Question& question, double time, bool first, const Progress& progress) {
     const std::vector<RegionRow> rows = regionRowsAt(question, time, progress);
-    return answerOf(regionTable(rows, question.info().lengthUnit, question.errors), question, time, first);
+    return answerOf(regionTable(rows, volumeUnit(question.info()), question.errors), question, time, first);
 }
 
 /// Colour of a region as views draw it.

@@ -71,15 +71,18 @@ volume::Dataset planeDataset(const std::shared_ptr<const codec::Archive>& archiv
     dataset.info.timeUnit.clear();
     dataset.info.quantities.clear();
     const auto unitText = [](const std::string& unit) { return unit.empty() ? std::string("-") : unit; };
-    std::string axes, units; // the axes of the plane, with their units
+    std::string axes; // of the plane, with their units
     for (int i = 0; i < 3; ++i) {
         const int axis = shape.axes[std::size_t(i)];
         const std::string unit = axis == 3 ? stored.timeUnit : stored.lengthUnit;
         axes += (i > 0 ? ", " : "") + (axis == 3 ? stored.timeName : std::string(1, "xyz"[axis])) + " [" +
                 unitText(unit) + "]";
-        units += (i > 0 ? ", " : "") + unitText(unit);
+        dataset.info.axisUnits[std::size_t(i)] = unit;
     }
-    if (shape.solved != 3) dataset.info.lengthUnit = units;
+    if (shape.solved == 3)
+        dataset.info.axisUnits = {};
+    else
+        dataset.info.lengthUnit.clear();
     dataset.info.provenance += (dataset.info.provenance.empty() ? "axes: " : "; axes: ") + axes;
     for (volume::Parameter& parameter : dataset.info.parameters) parameter.type = volume::ScalarType::F32;
     dataset.read = [slice, lattice = dataset.info.lattice](int parameter, int component, int) {
@@ -125,9 +128,12 @@ void addUnpackCommand(CLI::App& app) {
         "--even", request->even,
         "Resample a grid of uneven axes to one spacing per axis, linearly, for formats that hold no other");
     command
-        ->add_option("--plane", request->plane,
-                     "A,B,C,D,E: write the slice a x + b y + c z + d t + e = 0 through space and time, as a grid over "
-                     "three of the four axes")
+        ->add_option(
+            "--plane", request->plane,
+            "A,B,C,D,E: write the slice a x + b y + c z + d t + e = 0 through space and time, in the units of the "
+            "archive, as a grid over three of the four axes: y, z, t where the plane is steepest across x. "
+            "Values are linear between samples and times; along t the grid has as many even steps as there "
+            "are times")
         ->delimiter(',')
         ->expected(5);
     addDeriveOption(*command, request->derived);

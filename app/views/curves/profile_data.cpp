@@ -106,8 +106,8 @@ Profile readProfile(const volume::BrickSource& source, const ProfileQuery& query
 LineAxis lineAxis(const Session& session, const volume::DatasetInfo& info, const Profile& profile) {
     LineAxis out{"distance", {}, profile.distance, true};
     const double length = profile.distance.empty() ? 0 : profile.distance.back();
-    const auto& time = session.data.timeAxis;
-    const int axis = time ? static_cast<int>(time->axis) : 0;
+    const std::optional<int> time = info.timeAxis();
+    const int axis = time.value_or(0);
     bool alongTime = false, alongSpace = false;
     for (const glm::dvec3& at : profile.positions)
         for (int a = 0; a < 3 && time; ++a)
@@ -136,14 +136,10 @@ Table profileTable(const volume::DatasetInfo& info, const Session& session, cons
     if (timed) table.columns.push_back({.name = info.timeName, .unit = info.timeUnit});
     table.columns.push_back(along.distance ? TableColumn{.name = "distance", .unit = info.lengthUnit}
                                            : TableColumn{.name = along.title, .unit = along.unit});
-    glm::dvec3 perUnit(1); // shown in the unit of the data, times as times
-    for (int axis = 0; axis < 3; ++axis) {
-        const bool time = session.data.timeAxis && static_cast<int>(session.data.timeAxis->axis) == axis;
-        const AxisLabel label = time ? axisLabels(session, info)[std::size_t(axis)] : AxisLabel{};
-        if (time) perUnit[axis] = label.unit.perUnit;
-        table.columns.push_back({.name = time ? label.name : std::string(1, "xyz"[axis]),
-                                 .unit = time ? label.unit.name : info.lengthUnit});
-    }
+    const int axes = info.plane ? 4 : 3; // a plane in space and time has a time at each place
+    for (int axis = 0; axis < axes; ++axis)
+        table.columns.push_back(axis < 3 ? TableColumn{.name = std::string(1, "xyz"[axis]), .unit = info.lengthUnit}
+                                         : TableColumn{.name = timeWord(info), .unit = info.timeUnit});
     const std::size_t first = table.columns.size(), places = profile.positions.size();
     const std::vector<std::string> names = stateNames(info, profile.times);
     std::vector<std::string> states;
@@ -156,7 +152,8 @@ Table profileTable(const volume::DatasetInfo& info, const Session& session, cons
             const auto add = [&](double value) { table.columns[column++].numbers.push_back(value); };
             if (timed) add(profile.times[row]);
             add(along.distance ? profile.distance[i] : along.values[i]);
-            for (int axis = 0; axis < 3; ++axis) add(profile.positions[i][axis] * perUnit[axis]);
+            const glm::dvec4 point = info.pointAt(profile.positions[i], profile.times[row]);
+            for (int axis = 0; axis < axes; ++axis) add(point[axis]);
             for (; column < first + profile.values.size();) add(profile.values[column - first][row * places + i]);
         }
     if (several) table.columns.insert(table.columns.begin() + 1, {.name = "state", .texts = std::move(states)});

@@ -3,6 +3,7 @@
 #include "app/pane/plot.h"
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
 #include "volume/base/error.h"
 #include "volume/bricks/source_at_time.h"
 #include "volume/flow/flow_channels.h"
@@ -158,14 +159,32 @@ std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const Section
     return out;
 }
 
-std::string placeTitle(const SectionCurvesQuery& asked) {
-    return asked.line.size() == 2 ? "distance"
-                                  : std::string(volume::kSpaceAxisNames[static_cast<std::size_t>(asked.axis)]);
+namespace {
+
+bool runsAlongTime(const volume::DatasetInfo& info, const SectionCurvesQuery& asked) {
+    return asked.line.size() != 2 && info.timeAxis() == static_cast<int>(asked.axis);
+}
+
+} // namespace
+
+std::string placeTitle(const volume::DatasetInfo& info, const SectionCurvesQuery& asked) {
+    if (asked.line.size() == 2) return "distance";
+    return runsAlongTime(info, asked) ? timeWord(info)
+                                      : std::string(volume::kSpaceAxisNames[static_cast<std::size_t>(asked.axis)]);
+}
+
+LengthUnit placeUnit(const volume::DatasetInfo& info, const SectionCurvesQuery& asked, std::optional<double> length) {
+    if (runsAlongTime(info, asked)) return {info.timeUnit, info.plane->timePerLength};
+    return length ? suitableLength(info.lengthUnit, *length) : LengthUnit{info.lengthUnit};
 }
 
 std::vector<std::string> sectionNotes(const volume::DatasetInfo& info, const SectionCurves& curves) {
     const SectionCurvesQuery& asked = curves.query;
     std::vector<std::string> notes;
+    if (info.timeAxis())
+        notes.push_back("an axis is " + timeWord(info) + ": in areas, integrals and distances 1 " +
+                        (info.lengthUnit.empty() ? "of length" : info.lengthUnit) + " along it stands for " +
+                        formatQuantity(info.plane->timePerLength, info.timeUnit));
     notes.push_back(asked.line.size() == 2
                         ? "planes across the line: every sample has the value of its cell, which the planes cut exactly"
                         : "planes through the samples; every sample counts with the area of its cell in the plane");

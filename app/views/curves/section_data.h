@@ -2,6 +2,7 @@
 
 #include "app/data/number_origin.h"
 #include "app/session/views/section_settings.h"
+#include "app/ui/ticks.h"
 #include "app/values/plot.h"
 #include "app/values/table.h"
 #include "vis/scene/selection.h"
@@ -11,6 +12,7 @@
 #include "volume/flow/sections.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,7 +73,10 @@ struct CurveLook {
 std::vector<CurveLook> curveLooks(const volume::DatasetInfo& info, const SectionCurvesQuery& query);
 
 /// The title of the places along the axis or line, without unit.
-std::string placeTitle(const SectionCurvesQuery& query);
+std::string placeTitle(const volume::DatasetInfo& info, const SectionCurvesQuery& query);
+/// Their unit: that of lengths, or one that suits a length; of an axis that is time that of times.
+LengthUnit placeUnit(const volume::DatasetInfo& info, const SectionCurvesQuery& query,
+                     std::optional<double> length = {});
 
 /// Names of states that are drawn together, by what differs between them: their times, the selection and everything.
 std::vector<std::string> sectionStateNames(const volume::DatasetInfo& info, const std::vector<SectionCurves>& states);

@@ -82,8 +82,9 @@ Table sectionTable(const volume::DatasetInfo& info, const std::vector<SectionCur
         addColumn(table, rows, {.name = info.timeName, .unit = info.timeUnit},
                   [&](const Row& row) { return volume::timeAt(info.times, states[row.state].query.time); });
     if (states.size() > 1) addColumn(table, rows, {.name = "state"}, [&](const Row& row) { return names[row.state]; });
-    addColumn(table, rows, {.name = placeTitle(asked), .unit = info.lengthUnit},
-              [&](const Row& row) { return states[row.state].sections.place[row.plane]; });
+    const LengthUnit along = placeUnit(info, asked);
+    addColumn(table, rows, {.name = placeTitle(info, asked), .unit = along.name},
+              [&](const Row& row) { return states[row.state].sections.place[row.plane] * along.perUnit; });
     addColumn(table, rows, {.name = "region"}, [&](const Row& row) { return looks[row.state][row.region].name; });
     addColumn(table, rows, {.name = "parameter"}, [&](const Row& row) { return channelAt(row).name; });
     addColumn(table, rows, {.name = "unit"}, [&](const Row& row) { return channelAt(row).unit; });
@@ -127,7 +128,7 @@ public:
         const bool mixed = mixedSelections(states);
         for (const SectionCurves& state : states) looks_.push_back(regionLooks(info, state, mixed));
         const auto& places = states.front().sections.place;
-        length_ = suitableLength(info.lengthUnit, places.empty() ? 0 : std::abs(places.back() - places.front()));
+        length_ = placeUnit(info, asked_, places.empty() ? 0 : std::abs(places.back() - places.front()));
         if (!places.empty()) across_ = {places.front() * length_.perUnit, places.back() * length_.perUnit};
     }
 
@@ -208,7 +209,7 @@ private:
         const bool everywhere = measure_ != SectionMeasure::Flow && measure_ != SectionMeasure::Area;
         const std::string name = info_.channel(asked_.channels[channel]).name;
         Plot panel;
-        panel.x = {.title = placeTitle(asked_), .range = across_, .unit = length_.name};
+        panel.x = {.title = placeTitle(info_, asked_), .range = across_, .unit = length_.name};
         panel.y = {.title = what + (everywhere ? " of " + name : " where " + name + " exists"),
                    .range = {},
                    .unit = unitOf(channel).unit};

@@ -9,9 +9,11 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "app/values/place_text.h"
 #include "app/values/selection_text.h"
 #include "app/views/data/derived_list.h"
 #include "app/views/data/glyph_part_list.h"
+#include "app/views/data/plane_setting.h"
 #include "app/views/data/selection_rows.h"
 #include "codec/archive/archive.h"
 #include "codec/container/exactness.h"
@@ -59,7 +61,8 @@ std::string sizeText(const volume::DatasetInfo& info) {
     std::string text;
     for (int axis = 0; axis < 3; ++axis) {
         const double size = info.bounds.size()[axis];
-        const LengthUnit unit = suitableLength(info.lengthUnit, size);
+        const LengthUnit unit = axis == info.timeAxis() ? LengthUnit{info.timeUnit, info.plane->timePerLength}
+                                                        : suitableLength(info.lengthUnit, size);
         text += (axis ? " \u00d7 " : "") + formatQuantity(size * unit.perUnit, unit.name, size * unit.perUnit / 1000);
     }
     return text + (info.lengthUnit.empty() ? ", no unit stated" : "");
@@ -238,7 +241,7 @@ void drawSelection(ViewContext& context, const StatisticsResult* result) {
             volume = std::max(volume, channel.inside.volume);
         const glm::dvec3 size = info.bounds.size();
         const double whole = size.x * size.y * size.z;
-        ImGui::TextDisabled("%s%s", formatVolume(volume, info.lengthUnit).c_str(),
+        ImGui::TextDisabled("%s%s", volumeText(info, volume).c_str(),
                             whole > 0 ? (", " + formatShare(volume / whole) + " of the whole box").c_str() : "");
     }
     ImGui::TextDisabled("%s", originText(context, result->query.channels).c_str());
@@ -294,6 +297,10 @@ void drawDataView(ViewContext& context, const std::string& pane, DataView&) {
         drawSummary(context);
         chooseLengthUnit(context.session, info);
     }
+    if (ImGui::CollapsingHeader("Plane in space and time", context.session.data.timeAxis
+                                                               ? ImGuiTreeNodeFlags_DefaultOpen
+                                                               : ImGuiTreeNodeFlags_None))
+        drawPlaneSetting(context);
     // Above the derived parameters, whose height changes while a formula is edited.
     if (ImGui::CollapsingHeader("Derived parameters", ImGuiTreeNodeFlags_DefaultOpen))
         drawDerivedList(context, cache.derived);

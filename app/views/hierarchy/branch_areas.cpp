@@ -6,6 +6,7 @@
 #include "app/tools/brush_edit.h"
 #include "app/ui/ticks.h"
 #include "app/ui/widgets.h"
+#include "app/values/place_text.h"
 #include "app/views/hierarchy/branch_values.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ void tellBranch(const ViewContext& context, const Branches& branches, const Bran
     const volume::DatasetInfo& info = context.numbers->info();
     std::string text = branchText(context.session.selection.brushes, area.path) + "\n" +
                        formatShare(area.own.volume / branches.of({}).volume) + " of the box, " +
-                       formatVolume(area.own.volume, info.lengthUnit);
+                       volumeText(info, area.own.volume);
     text +=
         branches.level() > 0 ? "\n(estimated from a coarser level)" : "\n" + formatCount(area.own.samples) + " samples";
     ImGui::SetTooltip("%s", text.c_str());

@@ -2,6 +2,7 @@
 
 #include "app/pane/plot.h"
 #include "app/ui/time_text.h"
+#include "app/values/place_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,12 +93,13 @@ Table branchTable(const std::vector<vis::Brush>& brushes, const Branches& branch
               [&](const BranchPath& path) { return branchText(brushes, path); });
     addColumn(table, paths, {.name = "samples", .head = "Samples", .kind = NumberKind::Count},
               [&](const BranchPath& path) { return branches.of(path).samples; });
+    const LengthUnit volumes = volumeUnit(info);
     addColumn(table, paths,
               {.name = "volume",
                .head = "Volume",
-               .unit = info.lengthUnit.empty() ? "" : info.lengthUnit + "3",
-               .kind = NumberKind::Volume},
-              [&](const BranchPath& path) { return branches.of(path).volume; });
+               .unit = volumes.name,
+               .kind = info.timeAxis() ? NumberKind::Plain : NumberKind::Volume},
+              [&](const BranchPath& path) { return branches.of(path).volume * volumes.perUnit; });
     addColumn(table, paths,
               {.name = "share of the level above", .head = "Of the level above", .kind = NumberKind::Share},
               [&](BranchPath path) {

@@ -5,6 +5,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "app/values/place_text.h"
 #include "app/values/selection_text.h"
 #include "app/views/hierarchy/branch_areas.h"
 #include "app/views/hierarchy/branch_values.h"
@@ -219,7 +220,7 @@ void drawLevel(ViewContext& context, HierarchyCache& cache, const HierarchyShown
         const std::string above = own.above.volume > 0 ? formatShare(own.own.volume / own.above.volume) : "-";
         fittedText(formatShare(own.own.volume / all) + " of the box, " + above + " of the level above", size.x);
         ImGui::SetCursorScreenPos({origin.x, ImGui::GetCursorScreenPos().y});
-        fittedText(formatVolume(own.own.volume, info.lengthUnit) +
+        fittedText(volumeText(info, own.own.volume) +
                        (shown.now->level() > 0 ? ", estimated" : ", " + formatCount(own.own.samples) + " samples"),
                    size.x);
     }

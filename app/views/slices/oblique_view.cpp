@@ -150,7 +150,7 @@ void drawObliqueView(ViewContext& context, const std::string& pane, ObliqueView&
     const volume::DatasetInfo& info = context.source->info();
     const auto channel = resolveChannel(info, context.session, view.channel);
     if (!channel) return drawHint("No parameters", "This data set has no parameter to show.");
-    if (timeAxisOf(context.session, info))
+    if (info.timeAxis())
         return drawHint("No tilted slices over time", "An axis is time here, and lengths and times have no angle.");
     const glm::dvec3 size = info.bounds.size();
     if (!(std::min({size.x, size.y, size.z}) > 0))

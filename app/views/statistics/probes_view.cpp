@@ -20,7 +20,7 @@ struct ProbesCache : ViewCache {
 /// The name of the probe at the cross-hair, to be typed, and the button that removes it.
 void editHere(ViewContext& context, ToolRow& tools) {
     Session& session = context.session;
-    const std::size_t here = probeHere(session);
+    const std::size_t here = probeHere(session, context.numbers->info());
     if (here >= session.probes.size()) return;
     if (tools.next(em() * 10)) {
         ImGui::SetNextItemWidth(em() * 10);
@@ -45,7 +45,7 @@ void drawProbesView(ViewContext& context, const std::string& pane, ProbesView& v
     ToolRow tools(context);
     if (tools.next(ImGui::GetFrameHeight()) &&
         iconButton(context, "add", icons::kPlus, "Keep the values at the cross-hair, at the time shown (P)"))
-        addProbe(session);
+        addProbe(session, info);
     chooseChannels(tools, info, view.channels, shown);
     editHere(context, tools);
     std::vector<Probe> places = session.probes;
@@ -71,12 +71,14 @@ void drawProbesView(ViewContext& context, const std::string& pane, ProbesView& v
                 .table = [table](const Progress&) { return *table; }},
                false);
     if (session.probes.empty()) return drawHint("No probes", "Press P to keep the values at the cross-hair.");
-    const std::size_t here = probeHere(session);
+    const std::size_t here = probeHere(session, info);
     const auto look = [&](std::size_t row) -> TableRowLook {
         return {.selected = row == here, .tip = "Click: the cross-hair and the time go there"};
     };
     if (const auto clicked = drawTable("probes", *table, {.row = look})) {
-        session.cursor = session.probes[*clicked].position;
+        const auto position = positionOf(session.probes[*clicked], info);
+        if (!position) return;
+        session.cursor = *position;
         session.time = session.probes[*clicked].time;
     }
 }

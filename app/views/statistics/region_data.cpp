@@ -137,7 +137,7 @@ bool showsErrors(const std::vector<RegionRow>& rows) {
     return std::ranges::any_of(rows, [](const RegionRow& row) { return row.error > 0; });
 }
 
-Table regionTable(const std::vector<RegionRow>& rows, const std::string& lengthUnit, bool errors, bool shares) {
+Table regionTable(const std::vector<RegionRow>& rows, const LengthUnit& volumes, bool errors, bool shares) {
     Table table{.columns = {}, .names = 2};
     const auto add = [&](TableColumn column, auto of) -> TableColumn& {
         return addColumn(table, rows, std::move(column), of);
@@ -171,11 +171,12 @@ Table regionTable(const std::vector<RegionRow>& rows, const std::string& lengthU
         add({.name = "shareOfAll", .head = "Of all", .kind = NumberKind::Share}, &RegionRow::ofAll);
         add({.name = "shareOfExisting", .head = "Of its own", .kind = NumberKind::Share}, &RegionRow::ofExisting);
     }
+    const bool cubes = volumes.name.empty() || volumes.name.ends_with('3');
     add({.name = "volume",
          .head = "Volume",
-         .unit = lengthUnit.empty() ? "" : lengthUnit + "3",
-         .kind = NumberKind::Volume},
-        ofSummary(&volume::Summary::volume));
+         .unit = volumes.name,
+         .kind = cubes ? NumberKind::Volume : NumberKind::Plain},
+        [&](const RegionRow& row) { return row.summary.volume * volumes.perUnit; });
     return table;
 }
 

@@ -2,6 +2,7 @@
 
 #include "app/data/number_origin.h"
 #include "app/queries/statistics_query.h"
+#include "app/values/place_text.h"
 #include "app/values/table.h"
 #include "volume/analysis/region_statistics.h"
 #include "volume/field/time_pair.h"
@@ -62,8 +63,8 @@ std::vector<RegionRow> regionRows(const volume::DatasetInfo& info, const RegionQ
 bool showsErrors(const std::vector<RegionRow>& rows);
 
 /// Parameter, unit, region, samples, shares of them, volume, mean, deviation, least and most; `errors`: and the bound
-/// on the errors of these four. `shares` false: without shares.
-Table regionTable(const std::vector<RegionRow>& rows, const std::string& lengthUnit, bool errors, bool shares = true);
+/// on the errors of these four. `shares` false: without shares. `volumes`: what these are in (volumeUnit()).
+Table regionTable(const std::vector<RegionRow>& rows, const LengthUnit& volumes, bool errors, bool shares = true);
 
 struct RegionBalanceQuery {
     int channel = 0;

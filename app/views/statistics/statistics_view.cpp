@@ -5,6 +5,7 @@
 #include "app/queries/extreme_query.h"
 #include "app/queries/statistics_query.h"
 #include "app/tables/table_view.h"
+#include "app/values/place_text.h"
 #include "app/values/selection_text.h"
 #include "app/views/statistics/region_data.h"
 #include "volume/flow/flow_channels.h"
@@ -89,7 +90,7 @@ Table statisticsTable(const volume::DatasetInfo& info, const StatisticsResult& r
             row.summary = result.statistics.channels[i].*part.summary;
             row.range = info.channelRange(channelAt(i));
         }
-    Table table = regionTable(rows, info.lengthUnit, false, false);
+    Table table = regionTable(rows, volumeUnit(info), false, false);
     for (const std::size_t with : form.with) {
         const std::string& other = channelAt(with).name;
         TableColumn& column =
@@ -269,7 +270,7 @@ bool drawRegions(ViewContext& context, ToolRow& tools, const std::string& pane, 
         return true;
     }
     const std::vector<RegionRow> rows = regionRows(info, query, *numbers, selected ? selection : "all");
-    const auto table = std::make_shared<Table>(regionTable(rows, info.lengthUnit, showsErrors(rows)));
+    const auto table = std::make_shared<Table>(regionTable(rows, volumeUnit(info), showsErrors(rows)));
     std::vector<bool> known;
     for (const int channel : shown)
         known.push_back(isKnown(context.origin, info, {{channel}, *label, query.time, query.brushes}));

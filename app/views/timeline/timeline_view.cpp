@@ -1,4 +1,5 @@
 #include "app/pane/plot.h"
+#include "app/pane/shown_plane.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/fitted_text.h"
 #include "app/ui/number_field.h"
@@ -100,18 +101,31 @@ void chooseAxis(ViewContext& context, ToolRow& tools, const volume::DatasetInfo&
     }
 }
 
-/// Where the plane lies whose times run along an axis.
+/// Where a plane in space and time lies, and its angle. Of one that an equation says there is nothing to slide.
 void drawPlace(Session& session, ToolRow& tools) {
-    if (!tools.next(em() * 11, em())) return;
     volume::TimeAxis& along = *session.data.timeAxis;
-    const char* const axis = volume::kSpaceAxisNames[std::size_t(along.axis)].data();
-    auto place = static_cast<float>(along.place * 100);
-    char format[48];
-    std::snprintf(format, sizeof format, "plane at %%.1f %%%% of %s", axis);
-    ImGui::SetNextItemWidth(em() * 11);
-    if (slider("##place", place, 0, 100, format)) along.place = static_cast<double>(place) / 100;
-    if (ImGui::IsItemHovered())
-        tooltip("Position of the plane along the axis; the data are read again when you release the mouse");
+    if (along.equation) return;
+    const std::string axis(volume::kSpaceAxisNames[std::size_t(along.axis)]);
+    const auto share = [&](const char* id, double& value, const std::string& format, const char* tip) {
+        if (!tools.next(em() * 11, em())) return;
+        auto percent = static_cast<float>(value * 100);
+        ImGui::SetNextItemWidth(em() * 11);
+        if (slider(id, percent, 0, 100, format.c_str())) value = static_cast<double>(percent) / 100;
+        if (ImGui::IsItemHovered()) tooltip(tip);
+    };
+    if (tools.next(em() * 11, em())) {
+        auto degrees = static_cast<float>(along.degrees);
+        ImGui::SetNextItemWidth(em() * 11);
+        if (slider("##angle", degrees, -90, 90, (axis + " for time by %.0f\u00b0").c_str()))
+            along.degrees = std::round(static_cast<double>(degrees));
+        if (ImGui::IsItemHovered())
+            tooltip("How far the axis is exchanged for time: 0 shows one time, 90 one place at all times; the data are "
+                    "read again when you release the mouse");
+    }
+    share("##place", along.place, "plane at %.1f %% of " + axis,
+          "Position of the plane along the axis; the data are read again when you release the mouse");
+    if (std::abs(along.degrees) != 90)
+        share("##time", along.time, "at %.1f %% of time", "When the plane is there, from the first time to the last");
 }
 
 /// The line of a track of this size. One without room for numbers below has the first and the last time beside it.
@@ -198,10 +212,11 @@ void drawNow(Session& session, const volume::DatasetInfo& info, ToolRow& tools, 
         if (const std::string quantities = quantitiesText(info, now, session.data.axis); !quantities.empty())
             drawText(tools, quantities, false);
         drawText(tools, placeText(info.times, now), true);
-    } else if (const auto& along = session.data.timeAxis) {
-        drawText(tools, "Time runs along " + std::string(volume::kSpaceAxisNames[std::size_t(along->axis)]) + ".",
-                 true);
+    } else if (session.data.timeAxis) {
+        if (const auto axis = info.timeAxis())
+            drawText(tools, "Time runs along " + std::string(volume::kSpaceAxisNames[std::size_t(*axis)]) + ".", true);
         drawPlace(session, tools);
+        if (info.plane) drawText(tools, planeText(info, *info.plane), true);
     } else {
         drawText(tools, "These data have only one time.", true);
     }

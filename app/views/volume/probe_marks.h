@@ -7,7 +7,8 @@
 
 namespace tessera::app {
 
-/// A dot with its name at each probe.
-void drawProbes(ImDrawList& draw, const SpaceFrame& space, const std::vector<Probe>& probes);
+/// A dot with its name at each probe that the data hold.
+void drawProbes(ImDrawList& draw, const SpaceFrame& space, const std::vector<Probe>& probes,
+                const volume::DatasetInfo& info);
 
 } // namespace tessera::app

@@ -1,8 +1,10 @@
 #include "app/views/volume/space_beside.h"
 
-#include "volume/sources/time_axis.h"
+#include "app/pane/shown_plane.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <variant>
 
 namespace tessera::app {
@@ -30,11 +32,13 @@ std::shared_ptr<const volume::BrickSource> spaceOfPlane(const ViewContext& conte
 
 Session sessionInSpace(const Session& session, const volume::DatasetInfo& along, const volume::DatasetInfo& space) {
     Session inner = session;
-    const volume::TimeAxis& cut = *session.data.timeAxis;
-    const int axis = static_cast<int>(cut.axis);
-    inner.time =
-        std::clamp(session.cursor[axis] * volume::timePerLength(along, cut), space.times.front(), space.times.back());
-    inner.cursor[axis] = space.bounds.lo[axis] + cut.place * space.bounds.size()[axis];
+    glm::dvec4 point = along.pointAt(session.cursor, session.time);
+    if (const auto cut = planeShown(session, space); cut && along.plane && cut->solved == along.plane->solved)
+        point = cut->pointAt(session.cursor); // as it is being moved
+    point = glm::clamp(point, glm::dvec4(space.bounds.lo, space.times.front()),
+                       glm::dvec4(space.bounds.hi, space.times.back()));
+    inner.cursor = glm::dvec3(point);
+    inner.time = point.w;
     std::erase_if(inner.layers, [&](const vis::Layer& layer) { return !shownInSpace(layer, space); });
     std::erase_if(inner.selection.brushes, [&](const vis::Brush& brush) {
         return !ofValues(brush) || std::ranges::any_of(vis::regionChannels(brush.region), [&](const std::string& name) {
@@ -48,19 +52,27 @@ Session sessionInSpace(const Session& session, const volume::DatasetInfo& along,
     return inner;
 }
 
-void takeFromSpace(Session& session, const Session& before, const Session& edited, const volume::DatasetInfo& space) {
+void takeFromSpace(Session& session, const Session& before, const Session& edited, const volume::DatasetInfo& along,
+                   const volume::DatasetInfo& space) {
     if (!session.data.timeAxis || !edited.data.timeAxis) return;
     session.camera = edited.camera;
-    volume::TimeAxis& cut = *session.data.timeAxis;
-    const int axis = static_cast<int>(cut.axis);
-    cut.place = edited.data.timeAxis->place;
-    for (int a = 0; a < 3; ++a) {
-        if (edited.cursor[a] == before.cursor[a]) continue;
-        if (a != axis)
-            session.cursor[a] = edited.cursor[a];
-        else if (space.bounds.size()[a] > 0)
-            cut.place = std::clamp((edited.cursor[a] - space.bounds.lo[a]) / space.bounds.size()[a], 0.0, 1.0);
+    session.data.timeAxis = edited.data.timeAxis;
+    const bool went = edited.cursor != before.cursor, moved = edited.data.timeAxis != before.data.timeAxis;
+    if (!went && !moved) return;
+    glm::dvec4 point(edited.cursor, before.time);
+    auto cut = planeShown(session, space);
+    if (cut && went && !cut->holds(point)) {
+        session.data.timeAxis = volume::movedTo(*cut, *session.data.timeAxis, point);
+        cut = planeShown(session, space);
     }
+    if (!cut || !along.plane || cut->solved != along.plane->solved) return; // until the data are those of the plane
+    // The cross-hair goes along with the plane, at the time shown.
+    const glm::dvec3 normal(cut->normal);
+    if (moved && glm::dot(normal, normal) > 0)
+        point -= glm::dvec4((glm::dot(cut->normal, point) + cut->e) / glm::dot(normal, normal) * normal, 0);
+    point = glm::clamp(point, cut->lo, cut->hi);
+    for (int a = 0; a < 3; ++a)
+        if (point[a] != before.cursor[a] && a != cut->solved) session.cursor[a] = point[a];
 }
 
 } // namespace tessera::app

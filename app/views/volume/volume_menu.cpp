@@ -64,8 +64,8 @@ void drawVolumeMenu(ViewContext& context, const char* id, VolumeView& view, vis:
         ImGui::EndMenu();
     }
     ImGui::Separator();
-    const bool along = timeAxisOf(context.session, context.source->info()) != nullptr;
-    if (along || !context.session.data.timeAxis) { // positions in a plane over time are not positions in space
+    // Positions in a plane of space and time are not positions in space.
+    if (context.source->info().plane || !context.session.data.timeAxis) {
         drawBrushMenu(context);
         ImGui::Separator();
         drawLensMenu(context);

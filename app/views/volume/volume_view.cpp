@@ -3,6 +3,7 @@
 #include "app/pane/corner_legends.h"
 #include "app/pane/inner_view.h"
 #include "app/pane/scale_bar.h"
+#include "app/pane/shown_plane.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/readout.h"
 #include "app/queries/scene_query.h"
@@ -17,7 +18,9 @@
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
 #include "app/views/volume/callouts_beside.h"
+#include "app/views/volume/ink_on_paper.h"
 #include "app/views/volume/link_control.h"
+#include "app/views/volume/plane_in_space.h"
 #include "app/views/volume/probe_marks.h"
 #include "app/views/volume/space_beside.h"
 #include "app/views/volume/stereo_eyes.h"
@@ -49,23 +52,6 @@ struct SpaceCache : ViewCache {
     std::unique_ptr<vis::Renderer> renderer;
     std::map<std::string, std::unique_ptr<ViewCache>> caches; // gone before the renderer
     int renderers() const override { return renderer ? 1 : 0; }
-};
-
-/// Colours of texts and lines on the paper under a picture, while it lives.
-struct InkOnPaper {
-    bool paper;
-    explicit InkOnPaper(const vis::Scene& scene) : paper(vis::paperOf(scene).has_value()) {
-        if (!paper) return;
-        const glm::vec3 ground = vis::groundColor(scene);
-        const float ink = ground.r + ground.g + ground.b < 1.5f ? 0.9f : 0.12f;
-        ImGui::PushStyleColor(ImGuiCol_WindowBg, {ground.r, ground.g, ground.b, 1});
-        ImGui::PushStyleColor(ImGuiCol_Text, {ink, ink, ink, 1});
-    }
-    InkOnPaper(const InkOnPaper&) = delete;
-    InkOnPaper& operator=(const InkOnPaper&) = delete;
-    ~InkOnPaper() {
-        if (paper) ImGui::PopStyleColor(2);
-    }
 };
 
 /// One frame of a picture of the scene in a pane.
@@ -123,7 +109,7 @@ private:
         if (const auto chain = chain_.draw(*list_)) taken_.push_back(*chain);
         drawLegend();
         if (hasTriad_ && shown_.gizmo && view_.stereo.kind != vis::StereoKind::SideBySide) drawTriadAt(labels);
-        if (view_.showScaleBar && shown_.scaleBar && !timeAxisOf(session_, info_)) drawBar();
+        if (view_.showScaleBar && shown_.scaleBar && !info_.timeAxis()) drawBar();
         if (shown_.title) drawTexts();
         drawCentred(equalText(session_, info_));
         if (!status.complete && !context_.headless && !moving) drawProgress(status);
@@ -173,10 +159,11 @@ private:
     /// Draws lines and handles in space, besides the scene.
     void drawObjects(const SpaceFrame& space) {
         if (view_.showCursor && shown_.cursor && framed())
-            drawCursor3d(*list_, space, session_.cursor), drawProbes(*list_, space, session_.probes);
+            drawCursor3d(*list_, space, session_.cursor), drawProbes(*list_, space, session_.probes, info_);
         if (!shown_.outlines) return;
         drawSpaceBrushes(*list_, space, session_.selection);
         drawProfileLines(*list_, space, session_);
+        drawPlaneInSpace(*list_, space, session_, info_);
         if (!view_.showLenses) return;
         drawLenses(*list_, space, session_, cache_.lens.lens);
         if (!context_.takesInput()) return; // nobody can drag there
@@ -257,13 +244,16 @@ private:
             taken_.push_back(drawScaleBar(*list_, {left, max().y - em() * 0.5f}, bar));
     }
 
-    /// The stretch of the data, that axes are not shown as they lie, and the time shown in exported pictures and where
-    /// it is the view's own: the window has its timeline, but not where time runs along an axis.
+    /// The stretch of the data, that axes are not shown as they lie, what a plane in space and time is, and the time
+    /// shown in exported pictures and where it is the view's own: the window has its timeline, but not for such a
+    /// plane.
     UpperTexts upperTexts() const {
         std::string stretch = stretchText(session_.stretch, info_.lattice.axes), state;
         if (volume::isStraightened(info_.notes))
             stretch += (stretch.empty() ? "" : ", ") + std::string("oblique axes, shown straight");
-        if ((!context_.takesInput() || session_.data.timeAxis || view_.time) && info_.times.size() > 1)
+        if (info_.plane)
+            state = planeText(info_, *info_.plane);
+        else if ((!context_.takesInput() || session_.data.timeAxis || view_.time) && info_.times.size() > 1)
             state = stateText(info_, session_.time, session_.data.axis);
         return upperTextsOf(state, stretch, chain_.left() - picture_.min.x - em());
     }
@@ -347,7 +337,7 @@ void drawBeside(ViewContext& context, const std::string& pane, VolumeView& view,
     own.runCommand = context.runCommand;
     own.cameraKey = context.cameraKey;
     drawSpace(own, pane, view);
-    takeFromSpace(context.session, before, edited, space->info());
+    takeFromSpace(context.session, before, edited, context.numbers->info(), space->info());
     for (std::string& text : cache.renderer->takeMessages()) own.answers.messages.push_back(std::move(text));
     takeAnswers(context, own, "data in space: ");
 }

@@ -2,6 +2,7 @@
 
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/values/place_text.h"
 #include "app/values/selection_text.h"
 #include "volume/flow/flow_channels.h"
 
@@ -53,13 +54,7 @@ std::string inRegion(const volume::DatasetInfo& info, const Finding& finding) {
 
 /// " at x 1.1, y 0.65, z 12 mm".
 std::string worthPlace(const volume::DatasetInfo& info, glm::dvec3 place) {
-    const glm::dvec3 size = info.bounds.size();
-    const LengthUnit unit = suitableLength(info.lengthUnit, std::max({size.x, size.y, size.z}));
-    std::string text;
-    for (int axis = 0; axis < 3; ++axis)
-        text += std::string(axis ? ", " : " at ") + char('x' + axis) + " " +
-                formatNumber(place[axis] * unit.perUnit, size[axis] * unit.perUnit / 100);
-    return text + (unit.name.empty() ? "" : " " + prettyUnit(unit.name));
+    return " at " + pointText(info, place, 0.01);
 }
 
 /// Whether all steps are of one length: then the greatest change is the fastest.

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "app/data/sources.h"
+
+#include <optional>
+
+namespace tessera::app {
+
+/// The sources of the plane in space and time that a session names (DataRef::timeAxis) in place of those of the data,
+/// without derived parameters. NumberOrigin::spaceOfPlane keeps the numbers of the data. Throws Error.
+Sources cutByPlane(const Sources& whole, const DataRef& data);
+
+/// Another plane of the same data as the one shown, with the derived parameters of `data`: nothing is opened again.
+/// None where that cannot be done: no plane is shown or wanted, or the data are shown as an archive would hold them.
+std::optional<Sources> cutAgain(const Sources& shown, const DataRef& data, std::vector<std::string>& messages,
+                                const Progress& progress = {});
+
+/// Whether a layout shows a plane in space and time, and these data, shown without one, have the times for it.
+bool layoutCuts(const Session& layout, const DataRef& data, const volume::DatasetInfo& info);
+/// Said where the layout does and the data have one time.
+inline constexpr const char* kNoTimesToCut =
+    "The layout shows a plane in space and time, and these data have one time: they are shown as they are.";
+
+} // namespace tessera::app
