@@ -178,6 +178,31 @@ TEST(FlowParticles, OfASingleTimeAreThoseOfASteadyFlow) {
     }
 }
 
+TEST(FlowBlur, CopiesStandWhereGlyphsCameFrom) {
+    const auto source = windAt({0}, [](double) { return 2.0; });
+    FlowLayer layer{.vector = "U", .channel = "f"};
+    layer.kind = FlowKind::Cones;
+    layer.seeds = volume::SeedShape::Line;
+    layer.from = layer.to = glm::vec3(0.5f);
+    layer.count = 1;
+    layer.size = 0.1f; // 2
+    const auto sharp = makeFlow(*source, layer, 0, glm::dvec3(1));
+    EXPECT_TRUE(sharp->tints.empty());
+    layer.blur = 4;
+    const auto geometry = makeFlow(*source, layer, 0, glm::dvec3(1));
+    const std::size_t each = sharp->mesh.positions.size();
+    ASSERT_EQ(geometry->mesh.positions.size(), 5 * each);
+    ASSERT_EQ(geometry->tints.size(), 5 * each);
+    for (std::size_t v = 0; v < 5 * each; ++v) {
+        const double copy = double(v / each);
+        EXPECT_NEAR(geometry->mesh.positions[v].x, sharp->mesh.positions[v % each].x - 0.5 * copy, 1e-4);
+        EXPECT_LT(geometry->tints[v].r, 0) << "coloured by the parameter";
+        if (v >= each) {
+            EXPECT_LT(geometry->tints[v].a, geometry->tints[v - each].a) << "fading";
+        }
+    }
+}
+
 TEST(BentArrows, AreClosedAndEndAtTheirTip) {
     LineSet lines;
     for (int i = 0; i <= 100; ++i) {
