@@ -155,7 +155,7 @@ vis::Camera sliceCamera(const PlanePicture& picture, const vis::WorldFrame& worl
 void drawSlice(ViewContext& context, const CalloutPart& shown) {
     const auto slice = calloutSlice(context, shown.callout, shown.place, withoutBar(shown.inner));
     if (!slice) return;
-    drawPicture(context, shown.state.plane, slice->picture, slice->frame, shown.share);
+    drawPicture(context, shown.state.plane, slice->picture, slice->frame, shown.share, shown.key);
     drawOver(context, shown.state.plane, slice->picture, slice->frame, shown.key);
     const PlotFrame& plot = slice->frame.plot;
     drawLength(context, {plot.min, {plot.width(), plot.height()}}, sliceCamera(slice->picture, slice->frame.world),
@@ -181,7 +181,7 @@ std::string calloutTitle(const ViewContext& context, const Callout& callout, con
         const LengthUnit unit = axisLabels(session, info)[std::size_t(axis)].unit;
         where = place.name + " = " +
                 formatQuantity(session.cursor[axis] * unit.perUnit, unit.name,
-                               tellingLength(info, axis, session.cursor[axis], 0.01) * unit.perUnit);
+                               tellingLength(info, axis, session.cursor, 0.01) * unit.perUnit);
     }
     if (info.times.size() > 1 && !info.timeAxis()) when = timeValueText(info, session.time);
     if (!callout.name.empty()) what = callout.name, where.clear();

@@ -79,26 +79,26 @@ void drawGlyphPicture(ImDrawList& draw, ImVec2 middle, float size, vis::GlyphKin
                       const std::vector<double>& shares) {
     vis::GlyphShape shape;
     vis::makeGlyphShape(kind, shares, 20, shape);
-    struct Face {
+    struct Facet {
         double depth;
         std::array<glm::dvec3, 3> at;
         int part;
     };
-    std::vector<Face> faces;
+    std::vector<Facet> faces;
     const bool flat = vis::isFlatGlyph(kind);
     for (const glm::uvec3& triangle : shape.triangles) {
-        Face face{0, {}, shape.parts[triangle.z]};
+        Facet face{0, {}, shape.parts[triangle.z]};
         for (int i = 0; i < 3; ++i) {
             face.at[static_cast<std::size_t>(i)] = legendView(shape.positions[triangle[i]], flat);
             face.depth += face.at[static_cast<std::size_t>(i)].z;
         }
         faces.push_back(face);
     }
-    std::ranges::stable_sort(faces, {}, &Face::depth);
+    std::ranges::stable_sort(faces, {}, &Facet::depth);
     const glm::dvec3 light = glm::normalize(glm::dvec3(-0.4, 0.6, 0.8));
     const ImDrawListFlags before = draw.Flags;
     draw.Flags &= ~ImDrawListFlags_AntiAliasedFill; // else seams are seen between the triangles
-    for (const Face& face : faces) {
+    for (const Facet& face : faces) {
         const glm::dvec3 normal = glm::cross(face.at[1] - face.at[0], face.at[2] - face.at[0]);
         if (!(glm::length(normal) > 0)) continue;
         const double lit = 0.55 + 0.45 * std::abs(glm::dot(glm::normalize(normal), light));

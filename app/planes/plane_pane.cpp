@@ -195,7 +195,7 @@ void drawPlaneLegend(const ViewContext& context, const PlanePicture& picture, co
         legend.marker = *value;
     if (!named) legend.title = legend.unit = "";
     legendBarItem(legend, context.decoration.legend);
-    if (context.decoration.legend) drawContourNote(contourNote(info, picture));
+    if (context.decoration.legend) drawContourNote(planeNote(info, picture));
 }
 
 void choosePlaneChannel(ToolRow& tools, const volume::DatasetInfo& info, int shown, std::string& channel) {

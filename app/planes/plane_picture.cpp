@@ -162,12 +162,21 @@ ContourQuery contourQuery(const PlanePicture& picture) {
             picture.levels.values,     picture.maps};
 }
 
-std::string contourNote(const volume::DatasetInfo& info, const PlanePicture& picture) {
+std::string planeNote(const volume::DatasetInfo& info, const PlanePicture& picture) {
     const ContourSettings& lines = picture.shows.lines;
-    if (lines.count == 0 || !lines.drawn()) return {};
-    if (picture.lined) return contourTitle(info.channel(*picture.lined), picture.levels);
-    return "no contour lines: " +
-           (info.findChannel(lines.channel) ? "labels have none" : "there is no " + lines.channel);
+    std::string note;
+    if (lines.count > 0 && lines.drawn())
+        note = picture.lined
+                   ? contourTitle(info.channel(*picture.lined), picture.levels)
+                   : "no contour lines: " +
+                         (info.findChannel(lines.channel) ? "labels have none" : "there is no " + lines.channel);
+    const std::string& vector = picture.shows.strokes.vector;
+    if (vector.empty()) return note;
+    const bool known = std::ranges::any_of(info.parameters, [&](const volume::Parameter& parameter) {
+        return parameter.components == 3 && parameter.name == vector;
+    });
+    const std::string own = known ? "strokes along " + vector : "no strokes: there is no vector " + vector;
+    return note.empty() ? own : note + "; " + own;
 }
 
 glm::dvec3 nearestPlace(const PlanePicture& picture, const volume::Box& box, glm::dvec2 along) {

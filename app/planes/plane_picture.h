@@ -74,8 +74,8 @@ std::string unevenText(const PlanePicture& picture);
 /// The contour lines of the picture.
 ContourQuery contourQuery(const PlanePicture& picture);
 
-/// What the legend says of the contour lines; "" where the renderer draws them or none are wanted.
-std::string contourNote(const volume::DatasetInfo& info, const PlanePicture& picture);
+/// What the legend says of the contour lines, unless the renderer draws them, and of strokes; "" where there are none.
+std::string planeNote(const volume::DatasetInfo& info, const PlanePicture& picture);
 
 /// The place in a plane nearest to `along` that lies in the box; physical.
 glm::dvec3 nearestPlace(const PlanePicture& picture, const volume::Box& box, glm::dvec2 along);

@@ -39,10 +39,11 @@ FlowQuery flowQuery(const vis::FlowLayer& layer, const Session& session, const v
     // Paths cover all times; the time shown only decides which particles start.
     if (layer.kind == vis::FlowKind::Pathlines) query.time = {query.time.nearest(), query.time.nearest(), 0};
     query.layer.style = {}; // does not change the geometry
-    if (layer.seedBrushed && session.selection.active()) {
+    if ((layer.seedBrushed || layer.contextWidth < 1) && session.selection.active()) {
         query.brushes.brushes = session.selection.brushes;
         query.lenses = brushSpace(session, info);
     }
+    if (!session.selection.active()) query.layer.contextWidth = 1; // there is no context
     return query;
 }
 

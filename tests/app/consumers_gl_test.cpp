@@ -103,7 +103,7 @@ constexpr Consumer kConsumers[] = {
     {"hyperSlice",      "F F F . . . . . . . . . . . . . . . . . F"},
     {"hierarchy",       "F F . . . F . . . . . . . . . . . . . . F"},
     {"worthSeeing",     "F . . . . . . . . . . . . . . F . . . . ."},
-    {"pieces",          "F F . . . . . . . . . . . . . . . . . . F"},
+    {"pieces",          ". . . . . . . . . . . . . . . . . . . . F"},
     {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
 };
 // clang-format on

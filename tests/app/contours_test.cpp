@@ -246,7 +246,7 @@ TEST(Contours, SettingsAreKeptInASession) {
     lines.channel = "gone";
     EXPECT_FALSE(contourChannel(source->info(), lines, 0));
     const auto note = [&] {
-        return contourNote(source->info(), axisPlane(session, source->info(), {}, session.cursor.z, {0, lines}));
+        return planeNote(source->info(), axisPlane(session, source->info(), {}, session.cursor.z, {0, lines}));
     };
     EXPECT_EQ(note(), "no contour lines: there is no gone");
     lines.channel = "";
@@ -255,6 +255,9 @@ TEST(Contours, SettingsAreKeptInASession) {
     EXPECT_EQ(note(), "") << "the renderer draws them";
     lines.count = 0;
     EXPECT_FALSE(contourChannel(source->info(), lines, 0));
+    const PlaneContent stroked{.channel = 0, .lines = lines, .strokes = {.vector = "gone"}};
+    EXPECT_EQ(planeNote(source->info(), axisPlane(session, source->info(), {}, session.cursor.z, stroked)),
+              "no strokes: there is no vector gone");
 }
 
 } // namespace

@@ -74,6 +74,30 @@ TEST(SessionTest, FitGivesFlowAVectorOfTheData) {
     EXPECT_EQ(flow.weight, "");
 }
 
+TEST(SessionTest, FitGivesStrokesAVectorOfTheDataOrNone) {
+    volume::DatasetInfo info = cellInfo();
+    std::erase_if(info.parameters, [](const volume::Parameter& parameter) { return parameter.components == 3; });
+    for (const bool any : {false, true}) {
+        if (any) {
+            info.parameters.push_back({});
+            info.parameters.back().name = "V";
+            info.parameters.back().components = 3;
+        }
+        Session session = defaultSession(info, {});
+        session.layers = {{"stroked", true, vis::SliceLayer{.channel = "T", .strokes = {.vector = "wind"}}},
+                          {"bare", true, vis::SliceLayer{.channel = "T"}}};
+        session.views["slices"] = SlicesView{.channel = "T", .strokes = {.vector = "wind"}};
+        session.views["oblique"] = ObliqueView{.channel = "T"};
+        std::vector<std::string> messages;
+        fitSession(session, info, messages);
+        const std::string wanted = any ? "V" : "";
+        EXPECT_EQ(std::get<vis::SliceLayer>(session.layers[0].technique).strokes.vector, wanted);
+        EXPECT_EQ(std::get<vis::SliceLayer>(session.layers[1].technique).strokes.vector, "");
+        EXPECT_EQ(std::get<SlicesView>(session.views["slices"]).strokes.vector, wanted);
+        EXPECT_EQ(std::get<ObliqueView>(session.views["oblique"]).strokes.vector, "");
+    }
+}
+
 TEST(SessionTest, FitGivesGlyphsParametersOfTheData) {
     const volume::DatasetInfo info = cellInfo();
     Session session = defaultSession(info, {});

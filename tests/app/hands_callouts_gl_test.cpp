@@ -1,5 +1,6 @@
 #include "app/edits/add_callout.h"
-#include "app/tools/lens_list.h"
+#include "app/pane/plot.h"
+#include "app/ui/theme.h"
 #include "tests/app/hands_fixture.h"
 
 #include <algorithm>

@@ -147,5 +147,33 @@ TEST_F(FlowLayerTest, SeedsLieWhereIsBrushed) {
     for (const glm::dvec3& seed : flowSeeds(*source, layer, 0, glm::dvec3(1), {}, &interest)) EXPECT_GT(seed.x, 4);
 }
 
+TEST_F(FlowLayerTest, TubesAndGlyphsAreThinnerWhereNothingIsBrushed) {
+    const auto source = wind();
+    Selection selection;
+    selection.brushes = {rangeBrush({{"f", 0.75, 1, 0.5}})}; // interest rises along x from 0 at 4 to 1 at 12
+    const DoiFunction interest(selection);
+    FlowLayer layer{.vector = "U", .channel = "f", .kind = FlowKind::Hedgehogs};
+    layer.count = 200;
+    layer.scaled = false;
+    layer.contextWidth = 0.25f;
+    const auto shorter = makeFlow(*source, layer, 0, glm::dvec3(1), {}, &interest);
+    ASSERT_EQ(shorter->lines.ends.size(), 200u);
+    double longest = 0, shortest = 1e9;
+    for (std::size_t i = 0; i < 400; i += 2) {
+        const double x = double(shorter->lines.positions[i].x) + shorter->lines.origin.x;
+        const double length = double(glm::distance(shorter->lines.positions[i], shorter->lines.positions[i + 1]));
+        longest = std::max(longest, length), shortest = std::min(shortest, length);
+        const double doi = std::clamp((x - 4) / 8, 0.0, 1.0);
+        EXPECT_NEAR(length, double(layer.size) * 16 * (0.25 + 0.75 * doi), 0.03) << x;
+    }
+    EXPECT_GT(longest, 3 * shortest);
+    layer.kind = FlowKind::Tubes;
+    const auto tubes = makeFlow(*source, layer, 0, glm::dvec3(1), {}, &interest);
+    layer.contextWidth = 1;
+    const auto even = makeFlow(*source, layer, 0, glm::dvec3(1), {}, &interest);
+    EXPECT_NE(tubes->mesh.positions, even->mesh.positions);
+    EXPECT_EQ(even->mesh.positions, makeFlow(*source, layer, 0, glm::dvec3(1))->mesh.positions);
+}
+
 } // namespace
 } // namespace tessera::vis

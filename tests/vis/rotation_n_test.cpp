@@ -134,7 +134,9 @@ TEST(RotationN, TheNearestFacedTurnHasTwoAxesAlongThePicture) {
             ASSERT_TRUE(two);
             for (int right = 0; right < axes; ++right)
                 for (int up = 0; up < axes; ++up)
-                    if (up != right) EXPECT_GE(r.at(0, (*two)[0]) + r.at(1, (*two)[1]), r.at(0, right) + r.at(1, up));
+                    if (up != right) {
+                        EXPECT_GE(r.at(0, (*two)[0]) + r.at(1, (*two)[1]), r.at(0, right) + r.at(1, up));
+                    }
         }
     EXPECT_EQ(nearestFaced(RotationN(), 4), RotationN());
 }

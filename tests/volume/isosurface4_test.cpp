@@ -78,16 +78,16 @@ Lattice latticeAround(LatticeKind kind, int n) {
     return kind == LatticeKind::CC ? cc : bccFor(cc);
 }
 
-constexpr double kRadius = 0.8;
+constexpr double kHyperRadius = 0.8;
 double hypersphere(glm::dvec3 place, double time) {
-    return kRadius - std::sqrt(glm::dot(place, place) + time * time);
+    return kHyperRadius - std::sqrt(glm::dot(place, place) + time * time);
 }
 
 TEST(Isosurface4, CutsOfAHypersphereAreBallsOfTheirVolume) {
     const std::vector<double> times = evenTimes(32, -1, 2.0 / 31);
     const TetraMesh mesh = surfaceOf(latticeAround(LatticeKind::CC, 32), times, 0, hypersphere);
     for (const double time : {-0.55, -0.2, 0.01, times[16], 0.4321, 0.6}) {
-        const double radius = std::sqrt(kRadius * kRadius - time * time);
+        const double radius = std::sqrt(kHyperRadius * kHyperRadius - time * time);
         const double ball = 4 * std::numbers::pi / 3 * radius * radius * radius;
         EXPECT_NEAR(volumeWithin(cutAtTime(mesh, time)), ball, 0.02 * ball) << time;
     }
@@ -101,7 +101,7 @@ TEST(Isosurface4, CutsOfAHypersphereAreBallsOfTheirVolume) {
         const auto at = [&](int i) { return cut.points[t[i]] - middle; };
         content += glm::determinant(glm::dmat4(at(0), at(1), at(2), normal)) / 6;
     }
-    const double radius = std::sqrt(kRadius * kRadius - 0.01);
+    const double radius = std::sqrt(kHyperRadius * kHyperRadius - 0.01);
     EXPECT_NEAR(content, 4 * std::numbers::pi / 3 * std::pow(radius, 3), 0.02 * 4 * std::pow(radius, 3));
 }
 
@@ -115,7 +115,7 @@ TEST(Isosurface4, IsClosedOnBothLattices) {
         for (const glm::uvec4& t : mesh.tetrahedra)
             content += glm::determinant(
                 glm::dmat4(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]));
-        const double ball = std::pow(std::numbers::pi, 2) / 2 * std::pow(kRadius, 4);
+        const double ball = std::pow(std::numbers::pi, 2) / 2 * std::pow(kHyperRadius, 4);
         EXPECT_NEAR(std::abs(content) / 24, ball, 0.1 * ball) << kLatticeNames[std::size_t(kind)];
     }
 }
@@ -194,7 +194,7 @@ double areaByTetrahedra(const SampleGrid& grid, double value) {
     return area;
 }
 
-double areaOf(const SurfaceMesh& mesh) {
+double trianglesArea(const SurfaceMesh& mesh) {
     double area = 0;
     for (const glm::uvec3& t : mesh.triangles) {
         const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
@@ -213,10 +213,10 @@ TEST(Isosurface4, AtStoredTimesItIsTheSurfaceOfThatTimeAndMovesInBetween) {
     for (const double time : times) {
         const double area =
             areaByTetrahedra(gridOfValues(lattice, [&](glm::dvec3 place) { return value(place, time); }), double(0.4f));
-        EXPECT_NEAR(areaOf(cutAtTime(mesh, time)), area, 2e-4 * area) << time;
+        EXPECT_NEAR(trianglesArea(cutAtTime(mesh, time)), area, 2e-4 * area) << time;
         if (time == 0 || time == 3) continue;
-        EXPECT_NEAR(areaOf(cutAtTime(mesh, time - 1e-6)), area, 1e-3 * area);
-        EXPECT_NEAR(areaOf(cutAtTime(mesh, time + 1e-6)), area, 1e-3 * area);
+        EXPECT_NEAR(trianglesArea(cutAtTime(mesh, time - 1e-6)), area, 1e-3 * area);
+        EXPECT_NEAR(trianglesArea(cutAtTime(mesh, time + 1e-6)), area, 1e-3 * area);
     }
 }
 
@@ -261,7 +261,7 @@ TEST(Isosurface4, ReadsALevelOfASource) {
     const TetraMesh fine = extractIsosurface4(*source, 0, 0, 0), coarse = extractIsosurface4(*source, 0, 0, 1);
     EXPECT_GT(fine.tetrahedra.size(), 2 * coarse.tetrahedra.size());
     EXPECT_GT(coarse.tetrahedra.size(), 100u);
-    const double ball = 4 * std::numbers::pi / 3 * std::pow(kRadius * kRadius - 0.04, 1.5);
+    const double ball = 4 * std::numbers::pi / 3 * std::pow(kHyperRadius * kHyperRadius - 0.04, 1.5);
     EXPECT_NEAR(volumeWithin(cutAtTime(fine, 0.2)), ball, 0.04 * ball);
     EXPECT_NEAR(volumeWithin(cutAtTime(coarse, 0.2)), ball, 0.2 * ball);
 

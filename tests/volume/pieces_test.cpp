@@ -22,14 +22,14 @@ namespace {
 
 using Value4 = std::function<double(glm::dvec3 place, int time)>;
 
-Dataset dataOf(const Lattice& lattice, int times, const Value4& value) {
+Dataset piecesData(const Lattice& lattice, int times, const Value4& value) {
     std::vector<Field> fields;
     for (int t = 0; t < times; ++t)
         fields.push_back(test::sampled<float>(lattice, [&](glm::dvec3 place) { return value(place, t); }));
     return test::datasetOf(std::move(fields), std::size_t(times));
 }
 
-std::shared_ptr<const BrickSource> sourceOf(Dataset dataset, LatticeKind lattice = LatticeKind::CC) {
+std::shared_ptr<const BrickSource> piecesSource(Dataset dataset, LatticeKind lattice = LatticeKind::CC) {
     return makeMemorySource(std::move(dataset), {.lattice = lattice, .brickSize = 8});
 }
 
@@ -52,7 +52,7 @@ TEST(Pieces, MergeAndSplitWhereTheBallsDo) {
     const Lattice lattice = test::ccLattice({21, 11, 11});
     // 12, 10.5, 9, 7.5, 6 apart, of radius 4: one as soon as their surfaces are less than a cell apart.
     const auto merging = [](glm::dvec3 place, int t) { return twoBalls(place, 12 - 1.5 * t, 4); };
-    const PieceGraph merged = findPieces(*sourceOf(dataOf(lattice, 5, merging)), {});
+    const PieceGraph merged = findPieces(*piecesSource(piecesData(lattice, 5, merging)), {});
     EXPECT_EQ(eventsOf(merged), (Events{{PieceEventKind::Merge, 3}}));
     EXPECT_EQ(merged.tracks, 3);
     const PieceEvent& event = merged.events.front();
@@ -62,7 +62,7 @@ TEST(Pieces, MergeAndSplitWhereTheBallsDo) {
     EXPECT_EQ(merged.pieces[std::size_t(event.to[0])].track, 3);
 
     const auto splitting = [](glm::dvec3 place, int t) { return twoBalls(place, 6 + 1.5 * t, 4); };
-    const PieceGraph split = findPieces(*sourceOf(dataOf(lattice, 5, splitting)), {});
+    const PieceGraph split = findPieces(*piecesSource(piecesData(lattice, 5, splitting)), {});
     EXPECT_EQ(eventsOf(split), (Events{{PieceEventKind::Split, 2}}));
     ASSERT_EQ(split.events.front().to.size(), 2u);
     EXPECT_EQ(split.pieces[std::size_t(split.events.front().to[1])].track, 3);
@@ -75,14 +75,14 @@ TEST(Pieces, AreBornDieEnterAndLeave) {
         const double leaves = 2.5 - glm::length(place - glm::dvec3(8 + 3.4 * t, 8, 7));
         return std::max(grows, leaves);
     };
-    const PieceGraph graph = findPieces(*sourceOf(dataOf(lattice, 5, value)), {});
+    const PieceGraph graph = findPieces(*piecesSource(piecesData(lattice, 5, value)), {});
     EXPECT_EQ(eventsOf(graph),
               (Events{{PieceEventKind::Birth, 1}, {PieceEventKind::Death, 3}, {PieceEventKind::Leave, 3}}));
     const auto back = [&](glm::dvec3 place, int t) { return value(place, 4 - t); };
-    EXPECT_EQ(eventsOf(findPieces(*sourceOf(dataOf(lattice, 5, back)), {})),
+    EXPECT_EQ(eventsOf(findPieces(*piecesSource(piecesData(lattice, 5, back)), {})),
               (Events{{PieceEventKind::Birth, 2}, {PieceEventKind::Enter, 2}, {PieceEventKind::Death, 4}}));
     // What is below is one piece around them.
-    const PieceGraph below = findPieces(*sourceOf(dataOf(lattice, 5, value)), {.side = PieceSide::Below});
+    const PieceGraph below = findPieces(*piecesSource(piecesData(lattice, 5, value)), {.side = PieceSide::Below});
     EXPECT_EQ(below.tracks, 1);
     EXPECT_TRUE(below.events.empty());
 }
@@ -140,7 +140,7 @@ TEST(Pieces, NumbersAreThoseOfAFloodFillOnUnevenCells) {
     }
     Dataset dataset = test::unevenDataset(std::move(fields), 3);
     dataset.info.times = {0, 1, 5};
-    const auto source = sourceOf(dataset);
+    const auto source = piecesSource(dataset);
     const PieceGraph graph = findPieces(*source, {.value = 0.8});
     std::size_t next = 0;
     std::vector<std::vector<ByHand>> hands;
@@ -213,7 +213,7 @@ TEST(Pieces, AreThoseOfTheSurfaceInSpaceAndTime) {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> even(0, 1);
     const auto source =
-        sourceOf(dataOf(test::ccLattice({9, 8, 7}), 4, [&](glm::dvec3, int) { return double(even(random)); }));
+        piecesSource(piecesData(test::ccLattice({9, 8, 7}), 4, [&](glm::dvec3, int) { return double(even(random)); }));
     for (const double value : {0.04, 0.5, 0.96}) {
         const std::size_t above = piecesOverTime(findPieces(*source, {.value = value})),
                           below = piecesOverTime(findPieces(*source, {.value = value, .side = PieceSide::Below}));
@@ -238,11 +238,11 @@ TEST(Pieces, OfRegionsAreNeverJoinedAndSmallOnesAreCounted) {
     Dataset dataset = test::datasetOf(std::move(fields), 2);
     dataset.info.parameters[1].categorical = true;
     dataset.info.parameters[1].ranges = {{1, 2}};
-    const PieceGraph whole = findPieces(*sourceOf(dataset), {.value = 0.5});
+    const PieceGraph whole = findPieces(*piecesSource(dataset), {.value = 0.5});
     EXPECT_EQ(whole.tracks, 2); // the bar and the speck
     EXPECT_EQ(whole.leftOutTracks, 0u);
     dataset.info.parameters[0].parts = {"p1", {{1}, {2}}};
-    const PieceGraph apart = findPieces(*sourceOf(dataset), {.value = 0.5, .leastVolume = 5});
+    const PieceGraph apart = findPieces(*piecesSource(dataset), {.value = 0.5, .leastVolume = 5});
     EXPECT_EQ(apart.tracks, 2); // the bar in two, without the speck
     EXPECT_EQ(apart.leftOutTracks, 1u);
     EXPECT_EQ(apart.leftOut, 2u);
@@ -253,7 +253,7 @@ TEST(Pieces, OfRegionsAreNeverJoinedAndSmallOnesAreCounted) {
     brushed.doi = [](std::span<const float> values, glm::dvec3 place) {
         return values[0] == 2 && place.z < 1 ? 0.5 : 0.49;
     };
-    const PieceGraph selected = findPieces(*sourceOf(dataset), brushed);
+    const PieceGraph selected = findPieces(*piecesSource(dataset), brushed);
     ASSERT_EQ(selected.pieces.size(), 2u);
     EXPECT_EQ(selected.pieces[0].samples, 6 * 8);
     EXPECT_EQ(selected.pieces[0].mean, 0);
@@ -262,8 +262,8 @@ TEST(Pieces, OfRegionsAreNeverJoinedAndSmallOnesAreCounted) {
 TEST(Pieces, LabelSamplesWithTheirNumbers) {
     const Lattice lattice = test::ccLattice({21, 11, 11});
     for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC}) {
-        const auto below = sourceOf(
-            dataOf(lattice, 5, [](glm::dvec3 place, int t) { return twoBalls(place, 12 - 1.5 * t, 4); }), kind);
+        const auto below = piecesSource(
+            piecesData(lattice, 5, [](glm::dvec3 place, int t) { return twoBalls(place, 12 - 1.5 * t, 4); }), kind);
         const auto source = derive(below, {"piece", "", PiecesRecipe{.channel = "p0", .value = 0}});
         const Parameter& label = source->info().parameters.back();
         EXPECT_TRUE(label.categorical);

@@ -167,7 +167,8 @@ TEST(Samples4, D4IsTheCheckerboardOfSpaceAndTime) {
     const Samples4 ofBcc = gatherSamples(*bcc, query);
     EXPECT_NEAR(ofBcc.share, 0.5, 0.05);
     for (std::size_t i = 0; i < ofBcc.count(); ++i) { // cells on even times, half cells on odd ones
-        const double along = (double(ofBcc.positions[i].x) - first) / cell, odd = std::lround(ofBcc.times[i]) % 2 / 2.0;
+        const double along = (double(ofBcc.positions[i].x) - first) / cell,
+                     odd = double(std::lround(ofBcc.times[i]) % 2) / 2;
         ASSERT_NEAR(along - odd, std::round(along - odd), 1e-3);
     }
 }

@@ -50,7 +50,10 @@ double kernelWeight(double share, StrokeKernel kernel) {
 class Convolution {
 public:
     Convolution(const PlaneField& field, std::span<const float> noise, const LineIntegralSettings& settings)
-        : field_(field), noise_(noise), settings_(settings) {}
+        : field_(field), noise_(noise), settings_(settings), whole_(field.vectors.size(), 0) {
+        for (int y = 0; y + 1 < field.size.y; ++y)
+            for (int x = 0; x + 1 < field.size.x; ++x) whole_[field.index({x, y})] = isWhole({x, y});
+    }
 
     float operator()(glm::ivec2 texel) const {
         if (!field_.present(texel)) return std::numeric_limits<float>::quiet_NaN();
@@ -63,11 +66,11 @@ public:
             glm::dvec2 at = middle;
             for (double gone = 0; gone < half - 1e-9;) {
                 const double step = std::min(kStep, half - gone);
-                const glm::dvec2 first = field_.direction(at, part);
+                const glm::dvec2 first = direction(at, part);
                 if (first == glm::dvec2(0)) break;
                 const glm::dvec2 halfway = at + first * (0.5 * step * way);
                 if (!inside(halfway, part)) break;
-                const glm::dvec2 along = field_.direction(halfway, part);
+                const glm::dvec2 along = direction(halfway, part);
                 if (along == glm::dvec2(0)) break;
                 const glm::dvec2 next = at + along * (step * way);
                 if (!inside(next, part)) break;
@@ -89,6 +92,34 @@ private:
     bool holds(glm::ivec2 texel, std::uint16_t part) const {
         return field_.present(texel) && (field_.parts.empty() || field_.parts[field_.index(texel)] == part);
     }
+    /// Whether a texel and its neighbours to the right and above are present and of one part.
+    bool isWhole(glm::ivec2 texel) const {
+        for (int i = 0; i < 4; ++i) {
+            const glm::ivec2 other = texel + glm::ivec2(i & 1, i >> 1);
+            if (!field_.present(other)) return false;
+            if (!field_.parts.empty() && field_.parts[field_.index(other)] != field_.parts[field_.index(texel)])
+                return false;
+        }
+        return true;
+    }
+
+    /// PlaneField::direction at a place inside, most often without asking what is there.
+    glm::dvec2 direction(glm::dvec2 at, std::uint16_t part) const {
+        const glm::dvec2 from = at - 0.5;
+        if (!(from.x >= 0) || !(from.y >= 0)) return field_.direction(at, part);
+        const glm::ivec2 low(from);
+        const std::size_t first = field_.index(low);
+        if (!whole_[first]) return field_.direction(at, part);
+        const glm::dvec2 share = from - glm::dvec2(low);
+        const glm::vec2* const below = field_.vectors.data() + first;
+        const glm::vec2* const above = below + field_.size.x;
+        const glm::dvec2 sum =
+            glm::dvec2(below[0]) * ((1 - share.x) * (1 - share.y)) + glm::dvec2(below[1]) * (share.x * (1 - share.y)) +
+            glm::dvec2(above[0]) * ((1 - share.x) * share.y) + glm::dvec2(above[1]) * (share.x * share.y);
+        const double length = glm::length(sum);
+        return length > 0 ? sum / length : glm::dvec2(0);
+    }
+
     double noiseBetween(glm::dvec2 at) const {
         const Around around(at);
         double sum = 0;
@@ -103,6 +134,7 @@ private:
     const PlaneField& field_;
     std::span<const float> noise_;
     LineIntegralSettings settings_;
+    std::vector<std::uint8_t> whole_; ///< isWhole of each texel
 };
 
 /// Mean 0 and the stated deviation, of the texels that are present.

@@ -64,6 +64,7 @@ struct FlowLayer {
     bool flat = false;          ///< bent arrows are ribbons
     float minimumSpeed = 1e-4f; ///< in fractions of the largest speed
     float radius = 0.004f;      ///< of a tube, in fractions of the longest edge as drawn
+    float contextWidth = 1;     ///< of tubes and glyphs at degree of interest 0, as a share of that at 1
     float size = 0.05f;         ///< of the longest glyph, in fractions of the longest edge as drawn
     bool scaled = true;         ///< glyph length proportional to the vector, else constant
     GeometryStyle style{.color = glm::vec3(0.75f)}; ///< does not change the geometry
@@ -200,6 +201,13 @@ struct FlowLayer {
                                    .doc = "Draw bent arrows as flat ribbons",
                                    .applies = self.kind == FlowKind::BentArrows,
                                    .group = kSizes});
+        visit(self.contextWidth,
+              FieldInfo{.key = "contextWidth",
+                        .doc = "Width of tubes, and length of glyphs, where the brushes select nothing, as a share of "
+                               "that in the selection; 1: the same",
+                        .range = Range{0, 1},
+                        .applies = self.kind == FlowKind::Tubes || isFlowGlyph(self.kind),
+                        .group = kSizes});
         visit(self.size, FieldInfo{.key = "size",
                                    .doc = "Length of the longest glyph; longest edge as drawn = 1",
                                    .range = Range{1e-3, 1},

@@ -112,7 +112,7 @@ std::optional<FlowData> readFlow(const volume::BrickSource& source, const FlowLa
     const volume::TimePair shown = volume::timesAround(info.times, moment);
     if (followsParticles(layer.kind)) {
         data.series = std::make_shared<const volume::VectorSeries>(source, data.parameter, data.level);
-        data.lattice = data.series->frame(std::size_t(shown.nearest()))->x.lattice;
+        data.lattice = data.series->frame(std::size_t(shown.nearest())).x.lattice;
         const double time = volume::timeAt(info.times, shown);
         data.field = [series = data.series, time](glm::dvec3 place) { return series->at(place, time); };
     } else {
@@ -127,6 +127,15 @@ std::optional<FlowData> readFlow(const volume::BrickSource& source, const FlowLa
     data.perTime = double(layer.speed) * (layer.ignoreUnits ? 1 : volume::flowUnits(info, *parameter).perTime);
     progress.advance(1);
     return data;
+}
+
+std::function<double(glm::dvec3 place)> widthsOf(const volume::BrickSource& source, const FlowData& data,
+                                                 const FlowLayer& layer, double moment, const DoiFunction* interest,
+                                                 const Progress& progress) {
+    if (!interest || layer.contextWidth >= 1) return {};
+    const int time = volume::timesAround(source.info().times, moment).nearest();
+    return [weight = byInterest(source, *interest, time, data.level, progress),
+            least = double(layer.contextWidth)](glm::dvec3 place) { return std::lerp(least, 1.0, weight(place)); };
 }
 
 volume::StreamlineSettings streamlinesOf(const volume::BrickSource& source, const FlowData& data,

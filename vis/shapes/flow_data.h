@@ -5,6 +5,7 @@
 #include "volume/flow/even_lines.h"
 #include "volume/flow/flow.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -38,6 +39,12 @@ struct FlowSeeds {
 /// Those of particles lie where there is a vector now and it flows at some time.
 FlowSeeds seedsOf(const volume::BrickSource& source, const FlowData& data, const FlowLayer& layer, double moment,
                   glm::dvec3 stretch, const Progress& progress, const DoiFunction* interest);
+
+/// Factor on widths and lengths at places in space: FlowLayer::contextWidth where the degree of interest is 0, 1 where
+/// it is 1. Null where it is 1 everywhere. Throws Error, Cancelled.
+std::function<double(glm::dvec3 place)> widthsOf(const volume::BrickSource& source, const FlowData& data,
+                                                 const FlowLayer& layer, double moment, const DoiFunction* interest,
+                                                 const Progress& progress);
 
 /// Settings of the streamlines of a layer.
 volume::StreamlineSettings streamlinesOf(const volume::BrickSource& source, const FlowData& data,

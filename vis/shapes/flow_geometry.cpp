@@ -13,6 +13,8 @@ namespace tessera::vis {
 
 namespace {
 
+using Width = std::function<double(glm::dvec3 place)>;
+
 /// A direction in space as it is drawn at a place: by how much longer or shorter a length is on the sheet there.
 glm::dvec3 drawnDirection(const volume::Lattice& lattice, glm::dvec3 place, glm::dvec3 direction) {
     return direction * (glm::abs(lattice.spacing) / lattice.lengthsAt(place));
@@ -25,7 +27,7 @@ double longestDrawn(const volume::BrickSource& source, glm::dvec3 stretch) {
 
 std::shared_ptr<const Geometry> linesAlong(const volume::BrickSource& source, const FlowLayer& layer,
                                            const FlowData& data, const FlowSeeds& seeds, double moment,
-                                           glm::dvec3 stretch, const Progress& progress) {
+                                           glm::dvec3 stretch, const Width& width, const Progress& progress) {
     LineGatherer gatherer(source);
     const auto lines =
         layer.seeds == volume::SeedShape::Even
@@ -38,8 +40,13 @@ std::shared_ptr<const Geometry> linesAlong(const volume::BrickSource& source, co
     LineSet drawn = gatherer.finish(layer.channel, data.level, progress.part(0.6, 1));
     const double radius = double(layer.radius) * longestDrawn(source, stretch);
     auto out = std::make_shared<Geometry>();
+    Width onSheet;
+    if (width)
+        onSheet = [&, origin = drawn.origin](glm::dvec3 place) {
+            return width(source.info().lattice.axes.toSpace(place + origin));
+        };
     if (layer.kind == FlowKind::Tubes)
-        out->mesh = tubes(drawn, radius, stretch);
+        out->mesh = tubes(drawn, radius, stretch, onSheet);
     else if (layer.kind == FlowKind::BentArrows)
         out->mesh = bentArrows(drawn, radius, layer.flat, stretch);
     else
@@ -49,7 +56,7 @@ std::shared_ptr<const Geometry> linesAlong(const volume::BrickSource& source, co
 
 std::shared_ptr<const Geometry> glyphsAt(const volume::BrickSource& source, const FlowLayer& layer,
                                          const FlowData& data, const std::vector<glm::dvec3>& seeds, double moment,
-                                         glm::dvec3 stretch, const Progress& progress) {
+                                         glm::dvec3 stretch, const Width& width, const Progress& progress) {
     const glm::dvec3 origin = volume::originFor(source.info().bounds);
     const volume::Lattice& lattice = source.info().lattice;
     auto out = std::make_shared<Geometry>();
@@ -62,7 +69,7 @@ std::shared_ptr<const Geometry> glyphsAt(const volume::BrickSource& source, cons
     std::vector<Glyph> glyphs;
     for (std::size_t i = 0; i < seeds.size(); ++i) {
         const glm::dvec3 vector = *data.field(seeds[i]); // not zero: seeds lie where it flows
-        const double share = layer.scaled ? glm::length(vector) / greatest : 1;
+        const double share = (layer.scaled ? glm::length(vector) / greatest : 1) * (width ? width(seeds[i]) : 1);
         const glm::dvec3 drawnWay = glm::normalize(drawnDirection(lattice, seeds[i], vector) * stretch);
         glyphs.push_back({lattice.axes.toSheet(seeds[i]) - origin,
                           drawnWay * (share * double(layer.size) * longestDrawn(source, stretch)), scalars[i]});
@@ -97,9 +104,10 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
     const std::optional<FlowData> data = readFlow(source, layer, moment, progress.part(0, 0.3));
     if (!data) return nullptr;
     const FlowSeeds seeds = seedsOf(source, *data, layer, moment, stretch, progress.part(0.3, 0.4), interest);
+    const Width width = widthsOf(source, *data, layer, moment, interest, progress.part(0.4, 0.5));
     return followsFlow(layer.kind)
-               ? linesAlong(source, layer, *data, seeds, moment, stretch, progress.part(0.4, 1))
-               : glyphsAt(source, layer, *data, seeds.places, moment, stretch, progress.part(0.4, 1));
+               ? linesAlong(source, layer, *data, seeds, moment, stretch, width, progress.part(0.5, 1))
+               : glyphsAt(source, layer, *data, seeds.places, moment, stretch, width, progress.part(0.5, 1));
 }
 
 } // namespace tessera::vis

@@ -5,6 +5,7 @@
 #include "vis/scene/selection.h"
 #include "volume/flow/flow.h"
 
+#include <functional>
 #include <span>
 
 /// Geometry of flow layers.
@@ -18,8 +19,10 @@ struct Glyph {
 };
 
 /// Tubes around polylines, with closed ends and the vertices' scalars. They are round in stretched space, where
-/// `radius` is measured. Vertices that neither shape nor colours need are omitted.
-volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch);
+/// `radius` is measured; `width` is a factor on it by place, of the sheet less the origin of the lines. Vertices that
+/// neither shape nor colours need are omitted, but where widths differ.
+volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch,
+                          const std::function<double(glm::dvec3 place)>& width = {});
 
 /// Arrows that bend along polylines, round or as flat ribbons that lie in the plane in which they bend; `radius`: of
 /// the shaft, or half the width of the ribbon. What is shorter than that gets none.
@@ -43,7 +46,7 @@ volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch);
 int flowLevel(const volume::BrickGrid& grid, int times = 1);
 
 /// The geometry of a flow layer, coloured by its channel. Null if the data set has no such vector. `interest`: degree
-/// of interest by position, for seeding by brushes; null: 1 everywhere. Throws Error, Cancelled.
+/// of interest by position, for seeding and widths by brushes; null: 1 everywhere. Throws Error, Cancelled.
 std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, const FlowLayer& layer, int time,
                                          glm::dvec3 stretch, const Progress& progress = {},
                                          const DoiFunction* interest = nullptr);

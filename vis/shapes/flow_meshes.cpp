@@ -89,13 +89,13 @@ void sweep(Rings& rings, const LineCourse& course, const std::vector<AxisFrame>&
     }
 }
 
-void addTube(Rings& rings, const LineCourse& course, double radius) {
+void addTube(Rings& rings, const LineCourse& course, const std::vector<double>& radii) {
     const std::size_t n = course.places.size();
     const AxisFrame first = frameAlong(course.places[1] - course.places[0]);
     const std::vector<AxisFrame> frames = framesOf(course.places, first);
-    rings.face(course.places[0], course.places[0], first, 0, radius, course.scalars[0]);
-    sweep(rings, course, frames, std::vector<double>(n, radius), 0);
-    rings.face(course.places[n - 1], course.places[n - 1], frames.back(), radius, 0, course.scalars[n - 1]);
+    rings.face(course.places[0], course.places[0], first, 0, radii.front(), course.scalars[0]);
+    sweep(rings, course, frames, radii, 0);
+    rings.face(course.places[n - 1], course.places[n - 1], frames.back(), radii.back(), 0, course.scalars[n - 1]);
 }
 
 void addBentArrow(Rings& rings, const LineCourse& whole, double radius) {
@@ -156,15 +156,19 @@ void addComet(Rings& rings, const LineCourse& course, double radius) {
 
 } // namespace
 
-volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch) {
+volume::SurfaceMesh tubes(const LineSet& lines, double radius, glm::dvec3 stretch,
+                          const std::function<double(glm::dvec3 place)>& width) {
     const double step = colorStep(lines.scalars);
     Rings rings(stretch);
     rings.mesh.origin = lines.origin;
     std::uint32_t begin = 0;
     for (const std::uint32_t end : lines.ends) {
-        const LineCourse course = simplified(courseOf(lines, begin, end, radius * 0.05, stretch), radius * 0.05, step);
+        LineCourse course = courseOf(lines, begin, end, radius * 0.05, stretch);
+        if (!width) course = simplified(course, radius * 0.05, step);
         begin = end;
-        if (course.places.size() > 1) addTube(rings, course, radius);
+        std::vector<double> radii(course.places.size(), radius);
+        for (std::size_t i = 0; width && i < radii.size(); ++i) radii[i] *= width(course.places[i] / stretch);
+        if (course.places.size() > 1) addTube(rings, course, radii);
     }
     return std::move(rings.mesh);
 }

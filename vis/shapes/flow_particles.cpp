@@ -7,6 +7,7 @@
 #include "volume/mesh/surface_mesh.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -240,6 +241,7 @@ std::shared_ptr<const Geometry> makeParticles(const volume::BrickSource& source,
                                               const DoiFunction* interest) {
     const std::optional<FlowData> data = readFlow(source, layer, moment, progress.part(0, 0.2));
     if (!data) return nullptr;
+    assert(data->series && "a kind that follows particles");
     const std::vector<double>& times = source.info().times;
     ParticleWork work{source, layer, *data, moment, stretch, data->velocity(), {}};
     work.path.lattice = data->lattice;

@@ -4,6 +4,7 @@
 #include "volume/bricks/brick_cache.h"
 #include "volume/bricks/magnitude.h"
 #include "volume/bricks/sample_position.h"
+#include "volume/derived/computed_samples.h"
 #include "volume/derived/derived_names.h"
 #include "volume/derived/expression.h"
 #include "volume/derived/input_time.h"
@@ -37,21 +38,6 @@ std::size_t bytesOf(const Bricks& bricks) {
     return bytes;
 }
 
-void setAbsent(BrickSamples& samples, std::size_t i) {
-    if (samples.present.empty()) samples.present.assign(samples.values.size(), 1);
-    samples.present[i] = 0;
-    samples.values[i] = 0;
-}
-/// Makes results that are not finite absent.
-void set(BrickSamples& samples, std::size_t i, double value) {
-    if (!samples.rest.empty()) samples.rest[i] = 0;
-    const auto narrow = float(value);
-    if (std::isfinite(narrow))
-        samples.values[i] = narrow;
-    else
-        setAbsent(samples, i);
-}
-
 /// Sums of derivatives; absent as a whole where one of them is.
 template <std::size_t N> struct Derivative {
     std::array<double, N> sum{};
@@ -61,7 +47,7 @@ template <std::size_t N> struct Derivative {
         there = there && derivative;
     }
     void store(Bricks& out, std::size_t i) const {
-        for (std::size_t n = 0; n < N; ++n) there ? set(out[n], i, sum[n]) : setAbsent(out[n], i);
+        for (std::size_t n = 0; n < N; ++n) there ? setComputed(out[n], i, sum[n]) : setAbsent(out[n], i);
     }
 };
 
@@ -170,7 +156,7 @@ struct DerivedBricks::Impl {
             const bool present =
                 std::all_of(samples.begin(), samples.end(), [&](const BrickSamples& of) { return of.isPresent(i); });
             if (present)
-                set(out, i, results[i]);
+                setComputed(out, i, results[i]);
             else
                 setAbsent(out, i);
         }
@@ -269,8 +255,8 @@ struct DerivedBricks::Impl {
             }
         }
         for (std::size_t i = 0; i < count; ++i) {
-            set(out[0], i, mean[i]);
-            set(out[1], i, n[i] > 0 ? std::sqrt(squares[i] / n[i]) : 0);
+            setComputed(out[0], i, mean[i]);
+            setComputed(out[1], i, n[i] > 0 ? std::sqrt(squares[i] / n[i]) : 0);
         }
         return out;
     }
@@ -283,9 +269,9 @@ struct DerivedBricks::Impl {
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             if (!out.isPresent(i)) continue;
             if (recipe.measure == TimeMeasure::FromMean)
-                set(out, i, out.exact(i) - double((*both)[0].values[i]));
+                setComputed(out, i, out.exact(i) - double((*both)[0].values[i]));
             else
-                set(out, i, double((*both)[1].values[i]));
+                setComputed(out, i, double((*both)[1].values[i]));
         }
         return {std::move(out)};
     }
@@ -304,7 +290,7 @@ struct DerivedBricks::Impl {
         const BrickSamples other = input(times_.front(), key);
         for (std::size_t i = 0; i < out.values.size(); ++i) {
             if (out.isPresent(i) && other.isPresent(i))
-                set(out, i, out.exact(i) - toOwnUnit_(other.exact(i)));
+                setComputed(out, i, out.exact(i) - toOwnUnit_(other.exact(i)));
             else
                 setAbsent(out, i);
         }
@@ -315,12 +301,11 @@ struct DerivedBricks::Impl {
         if (now_) key.time = now_->nearest();
         return {pieces_->brick(key)};
     }
-
     Bricks make(const UncertaintyRecipe& recipe, const BrickKey& key) const {
         BrickSamples out = input(channelOf(recipe.channel), key);
         out.rest.clear();
         for (std::size_t i = 0; i < out.values.size(); ++i)
-            if (out.isPresent(i)) recipe.bound ? set(out, i, *recipe.bound) : setAbsent(out, i);
+            if (out.isPresent(i)) recipe.bound ? setComputed(out, i, *recipe.bound) : setAbsent(out, i);
         return {std::move(out)};
     }
 
@@ -328,7 +313,7 @@ struct DerivedBricks::Impl {
         Bricks out(3, empty(key));
         SamplePositions position(source_->grid(), key.index, key.level);
         for (std::size_t i = 0; i < out[0].values.size(); ++i, position.next())
-            for (int axis = 0; axis < 3; ++axis) set(out[std::size_t(axis)], i, position.at()[axis]);
+            for (int axis = 0; axis < 3; ++axis) setComputed(out[std::size_t(axis)], i, position.at()[axis]);
         return out;
     }
 
@@ -384,7 +369,7 @@ DerivedBricks::DerivedBricks(std::shared_ptr<const BrickSource> source, DerivedR
 
 DerivedBricks::DerivedBricks(const DerivedBricks& stored, const TimePair& now)
     : impl_(std::make_unique<Impl>(stored.impl_->stored_, stored.impl_->recipe_, now)) {
-    impl_->pieces_ = stored.impl_->pieces_; // with what they found
+    impl_->pieces_ = stored.impl_->pieces_;
 }
 
 const std::shared_ptr<const BrickSource>& DerivedBricks::sourceNow() const {

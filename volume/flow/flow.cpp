@@ -9,12 +9,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vector_relational.hpp>
+#include <limits>
 
 namespace tessera::volume {
 
 namespace {
 
-constexpr std::size_t kSeriesBytes = std::size_t(1) << 30;
 /// From a point with the vector `slope`, along the field (sign 1) or against it (-1), without the point itself.
 std::vector<glm::dvec3> halfLine(const ChangingField& field, glm::dvec3 place, glm::dvec3 slope, double sign,
                                  const StreamlineSettings& s) {
@@ -94,19 +94,27 @@ VectorGrid readVector(const BrickSource& source, int parameter, int time, int le
 VectorSeries::VectorSeries(const BrickSource& source, int parameter, int level)
     : times_(source.info().times),
       frames_(
-          kSeriesBytes,
+          std::numeric_limits<std::size_t>::max(),
           [&source, parameter, level](std::size_t time) {
               return std::make_shared<const VectorGrid>(readVector(source, parameter, int(time), level));
           },
-          [](const VectorGrid& grid) { return 3 * grid.x.values.size() * sizeof(grid.x.values[0]); }) {}
+          [](const VectorGrid& grid) { return 3 * grid.x.values.size() * sizeof(grid.x.values[0]); }),
+      loaded_(times_.size()) {}
+
+const VectorGrid& VectorSeries::frame(std::size_t time) const {
+    if (const VectorGrid* const here = loaded_[time].load(std::memory_order_acquire)) return *here;
+    const VectorGrid* const loaded = frames_.get(time).get();
+    loaded_[time].store(loaded, std::memory_order_release);
+    return *loaded;
+}
 
 std::optional<glm::dvec3> VectorSeries::at(glm::dvec3 position, double time) const {
-    if (times_.size() == 1) return frames_.get(0)->at(position);
+    if (times_.size() == 1) return frame(0).at(position);
     if (!(time >= times_.front() && time <= times_.back())) return std::nullopt;
     const auto after = std::size_t(std::lower_bound(times_.begin(), times_.end(), time) - times_.begin());
-    const auto b = frames_.get(after)->at(position);
+    const auto b = frame(after).at(position);
     if (times_[after] == time || !b) return b;
-    const auto a = frames_.get(after - 1)->at(position);
+    const auto a = frame(after - 1).at(position);
     if (!a) return std::nullopt;
     const double share = (time - times_[after - 1]) / (times_[after] - times_[after - 1]);
     return *a * (1 - share) + *b * share;

@@ -4,8 +4,8 @@
 #include "volume/flow/runge_kutta.h"
 #include "volume/reconstruct/sample_grid.h"
 
+#include <atomic>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,8 +30,8 @@ VectorGrid readVector(const BrickSource& source, int parameter, int time, int le
 
 using VectorField = std::function<std::optional<glm::dvec3>(glm::dvec3 position)>;
 
-/// A vector parameter at all its times, read on demand and interpolated linearly in time. Keeps a reference to the
-/// source. Thread-safe. Throws what readVector does.
+/// A vector parameter at all its times, read on demand, kept, and interpolated linearly in time. Keeps a reference to
+/// the source. Thread-safe. Throws what readVector does.
 class VectorSeries {
 public:
     VectorSeries(const BrickSource& source, int parameter, int level);
@@ -39,11 +39,12 @@ public:
     /// of a steady flow: always.
     std::optional<glm::dvec3> at(glm::dvec3 position, double time) const;
     /// All of it at a stored time.
-    std::shared_ptr<const VectorGrid> frame(std::size_t time) const { return frames_.get(time); }
+    const VectorGrid& frame(std::size_t time) const;
 
 private:
     std::vector<double> times_;
     mutable LoadOnce<std::size_t, VectorGrid, std::hash<std::size_t>> frames_;
+    mutable std::vector<std::atomic<const VectorGrid*>> loaded_; ///< those of frames_, to be found without its lock
 };
 
 struct StreamlineSettings {

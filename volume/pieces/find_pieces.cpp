@@ -76,7 +76,7 @@ std::array<std::vector<glm::ivec3>, 2> stepsOf(LatticeKind kind) {
     return {stepsAfter(kind, false), stepsAfter(kind, true)};
 }
 
-LabelledPieces labelled(const PieceSamples& samples) {
+LabelledPieces labelConnected(const PieceSamples& samples) {
     const Lattice& lattice = samples.grid.lattice;
     const auto steps = stepsOf(lattice.kind);
     std::vector<std::uint32_t> parent(samples.inside.size());
@@ -132,8 +132,8 @@ private:
 };
 
 /// The pieces of one time, without numbers.
-std::vector<Piece> measured(const PieceSamples& samples, const LabelledPieces& labels, const PieceCells& cells,
-                            int time) {
+std::vector<Piece> measurePieces(const PieceSamples& samples, const LabelledPieces& labels, const PieceCells& cells,
+                                 int time) {
     const Lattice& lattice = samples.grid.lattice;
     std::vector<Piece> out(labels.first.size());
     std::vector<double> valued(out.size(), 0); // volume of samples that have a value
@@ -169,8 +169,8 @@ std::vector<Piece> measured(const PieceSamples& samples, const LabelledPieces& l
 }
 
 /// Links between the pieces of two times, by position among those of each.
-std::vector<PieceLink> linked(const PieceSamples& before, const LabelledPieces& from, const PieceSamples& after,
-                              const LabelledPieces& to, const PieceCells& cells) {
+std::vector<PieceLink> linkPieces(const PieceSamples& before, const LabelledPieces& from, const PieceSamples& after,
+                                  const LabelledPieces& to, const PieceCells& cells) {
     const Lattice& lattice = after.grid.lattice;
     const auto steps = stepsOf(lattice.kind);
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;
@@ -197,7 +197,7 @@ int piecesLevel(const BrickGrid& grid, std::size_t times) {
 }
 
 LabelledPieces labelPieces(const BrickSource& source, const PiecesQuery& query, int time, const Progress& progress) {
-    return labelled(samplesInside(source, query, time, progress));
+    return labelConnected(samplesInside(source, query, time, progress));
 }
 
 PieceGraph findPieces(const BrickSource& source, const PiecesQuery& query, const Progress& progress) {
@@ -212,11 +212,11 @@ PieceGraph findPieces(const BrickSource& source, const PiecesQuery& query, const
     for (std::size_t t = 0; t < times; ++t) {
         progress.advance(double(t) / double(times), "pieces");
         PieceSamples now = samplesInside(source, query, int(t), inner);
-        LabelledPieces labels = labelled(now);
+        LabelledPieces labels = labelConnected(now);
         const int firstNow = int(graph.pieces.size());
-        for (Piece& piece : measured(now, labels, cells, int(t))) graph.pieces.push_back(std::move(piece));
+        for (Piece& piece : measurePieces(now, labels, cells, int(t))) graph.pieces.push_back(std::move(piece));
         if (t > 0)
-            for (const PieceLink& link : linked(before, labelsBefore, now, labels, cells))
+            for (const PieceLink& link : linkPieces(before, labelsBefore, now, labels, cells))
                 graph.links.push_back({link.from + firstBefore, link.to + firstNow, link.shared});
         before = std::move(now);
         labelsBefore = std::move(labels);

@@ -45,7 +45,7 @@ struct PiecesRequest {
     volume::ImportOptions import;
 };
 
-PiecesQuestion questionOf(const PiecesRequest& request, const volume::DatasetInfo& info) {
+PiecesQuestion askedPieces(const PiecesRequest& request, const volume::DatasetInfo& info) {
     const std::string known = volume::channelNames(info);
     const std::string& name = request.pieces.channel.empty() ? known : request.pieces.channel;
     const std::optional<int> channel = info.findChannel(name);
@@ -75,7 +75,7 @@ void runPieces(const PiecesRequest& request) {
     checkDerived(data.derived, volume::underived(sources.numbers)->info());
     for (const std::string& message : messages) warn("tessera: %s\n", message.c_str());
     const volume::DatasetInfo& info = sources.numbers->info();
-    const PiecesQuestion question = questionOf(request, info);
+    const PiecesQuestion question = askedPieces(request, info);
     const volume::PieceGraph graph = readPieces(*sources.numbers, question, 0, progress.part(0.3, 1));
     const Table table = piecesTable(info, graph, question);
     progress.advance(1);

@@ -27,7 +27,7 @@ std::string pieceValue(const volume::DatasetInfo& info, int channel, double valu
 }
 
 /// "2 and 3", "1, 2 and 3": numbers of pieces.
-std::string numbersOf(const PieceGraph& graph, const std::vector<int>& pieces) {
+std::string pieceNumbers(const PieceGraph& graph, const std::vector<int>& pieces) {
     std::string text;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         const std::string last = i + 1 == pieces.size() ? " and " : ", ";
@@ -36,7 +36,7 @@ std::string numbersOf(const PieceGraph& graph, const std::vector<int>& pieces) {
     return text;
 }
 
-std::string placeText(const volume::DatasetInfo& info, glm::dvec3 place) {
+std::string pieceCentre(const volume::DatasetInfo& info, glm::dvec3 place) {
     const glm::dvec3 size = info.bounds.size();
     const LengthUnit unit = suitableLength(info.lengthUnit, std::max({size.x, size.y, size.z}));
     std::string text;
@@ -58,9 +58,9 @@ std::string eventText(const PieceGraph& graph, const PieceEvent& event) {
     case PieceEventKind::Leave:
         return "has left at the border";
     case PieceEventKind::Merge:
-        return numbersOf(graph, event.from) + " merge into " + numbersOf(graph, event.to);
+        return pieceNumbers(graph, event.from) + " merge into " + pieceNumbers(graph, event.to);
     case PieceEventKind::Split:
-        return numbersOf(graph, event.from) + " splits into " + numbersOf(graph, event.to);
+        return pieceNumbers(graph, event.from) + " splits into " + pieceNumbers(graph, event.to);
     }
     return {};
 }
@@ -171,7 +171,7 @@ std::string pieceText(const volume::DatasetInfo& info, const PieceGraph& graph, 
         "piece " + std::to_string(piece.track) + " at " + timeText(info, info.times[std::size_t(piece.time)]) + ": " +
         formatVolume(piece.volume, info.lengthUnit) + ", " + formatCount(piece.samples) +
         (piece.samples == 1 ? " sample" : " samples") + "\nmean " + info.channel(question.channel).name + " " +
-        pieceValue(info, question.channel, piece.mean) + ", centre at " + placeText(info, piece.centroid);
+        pieceValue(info, question.channel, piece.mean) + ", centre at " + pieceCentre(info, piece.centroid);
     for (const PieceEvent& event : graph.events)
         if (concerns(graph, event, piece.track)) {
             const bool own = event.from.size() + event.to.size() == 1;

@@ -10,7 +10,7 @@ namespace tessera::app {
 
 namespace {
 
-volume::PiecesRecipe recipeOf(const volume::DatasetInfo& info, const PiecesQuestion& question) {
+volume::PiecesRecipe piecesRecipeOf(const volume::DatasetInfo& info, const PiecesQuestion& question) {
     return {info.channel(question.channel).name, question.value,
             question.of == PiecesOf::Below ? volume::PieceSide::Below : volume::PieceSide::Above, question.leastVolume};
 }
@@ -32,15 +32,16 @@ void selectPiece(Session& session, const volume::DatasetInfo& info, const Pieces
     session.animation.playing = false;
     session.cursor = piece.centroid;
     if (!exact || question.of == PiecesOf::Selected) return;
-    volume::DerivedParameter wanted{
-        .name = "pieces of " + info.channel(question.channel).name, .unit = "", .recipe = recipeOf(info, question)};
+    volume::DerivedParameter wanted{.name = "pieces of " + info.channel(question.channel).name,
+                                    .unit = "",
+                                    .recipe = piecesRecipeOf(info, question)};
     const std::string base = wanted.name;
     const auto taken = [&] {
         return std::ranges::find(session.data.derived, wanted.name, &volume::DerivedParameter::name) !=
                    session.data.derived.end() ||
                info.findChannel(wanted.name).has_value();
     };
-    const volume::DerivedParameter* known = labelOfPieces(session, recipeOf(info, question));
+    const volume::DerivedParameter* known = labelOfPieces(session, piecesRecipeOf(info, question));
     for (int number = 2; !known && taken(); ++number) wanted.name = base + " " + std::to_string(number);
     const std::string name = known ? known->name : addDerived(session, wanted);
     vis::Brush brush = vis::rangeBrush({{name, piece.track - 0.25, piece.track + 0.25, 0}});
@@ -50,7 +51,7 @@ void selectPiece(Session& session, const volume::DatasetInfo& info, const Pieces
 
 int chosenPiece(const Session& session, const volume::DatasetInfo& info, const PiecesQuestion& question) {
     if (question.of == PiecesOf::Selected) return 0;
-    const volume::DerivedParameter* label = labelOfPieces(session, recipeOf(info, question));
+    const volume::DerivedParameter* label = labelOfPieces(session, piecesRecipeOf(info, question));
     if (!label) return 0;
     for (const vis::Brush& brush : session.selection.brushes) {
         const auto* region = std::get_if<vis::RangeRegion>(&brush.region);

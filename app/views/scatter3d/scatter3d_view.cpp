@@ -65,15 +65,15 @@ void drawCloudToolbar(ViewContext& context, Scatter3dView& view, const std::vect
         }
         if (ImGui::IsItemHovered()) tooltip(kHelp[a]);
     }
-    struct Face {
+    struct Facet {
         const char* name;
         glm::dvec2 turn;
     };
-    static constexpr Face kFaces[] = {{"xz", {0, 0}}, {"yz", {90, 0}}, {"xy", {0, 90}}};
-    for (const Face& face : kFaces) {
+    static constexpr Facet kFaces[] = {{"xz", {0, 0}}, {"yz", {90, 0}}, {"xy", {0, 90}}};
+    for (const Facet& face : kFaces) {
         if (!tools.next(buttonWidth(face.name), em() * 0.3f)) continue;
         if (ImGui::Button(face.name)) view.turn = face.turn;
-        if (ImGui::IsItemHovered()) tooltip("Face these axes, to draw around samples and select them");
+        if (ImGui::IsItemHovered()) tooltip("Facet these axes, to draw around samples and select them");
     }
     if (tools.next(checkboxWidth("log"))) {
         ImGui::Checkbox("log", &view.logDensity);

@@ -2,6 +2,7 @@
 #include "app/pane/corner_legends.h"
 #include "app/pane/view_parts.h"
 #include "app/queries/geometry_query.h"
+#include "app/queries/strokes_query.h"
 #include "app/tools/brush_edit.h"
 #include "app/tools/brush_list.h"
 #include "app/ui/keys.h"
@@ -36,6 +37,7 @@ struct ShadowCubeCache : ViewCache {
     LegendPlace legend; ///< where it stays while something moves
     FaceMenu menu;
     AsyncGeometry geometry;
+    AsyncStrokes strokes;
     CubeDrag drag = CubeDrag::None;
     ImVec2 last{0, 0}, pressed{0, 0};
     std::size_t face = 0;    ///< where a brush began
@@ -273,7 +275,8 @@ void drawObject(ViewContext& context, const std::string& pane, const CubeFrame& 
     request.size = {frame.size.x, frame.size.y};
     request.moving = moving;
     request.wait = context.headless;
-    scene.geometry = cache.geometry.get(context, pane, moving);
+    scene.geometry = vis::withHalos(cache.geometry.get(context, pane, moving), vis::groundColor(scene));
+    cache.strokes.addTo(context, scene, pane);
     const vis::FrameStatus status = context.renderer.render(*cache.target, scene, request);
     context.answers.follow(status);
     addPicture(draw, status.texture, frame.min, frame.max());

@@ -52,7 +52,7 @@ std::string nameThatFits(const std::string& text, float room) {
     return fits.empty() || ImGui::CalcTextSize(fits.c_str()).x > room ? fitText(plain, room) : fits;
 }
 
-void chooseOver(ViewContext& context, ToolRow& tools, SliceMatrixView& view, bool rows) {
+void chooseMatrixSide(ViewContext& context, ToolRow& tools, SliceMatrixView& view, bool rows) {
     constexpr const char* kWords[] = {"parameters", "directions", "positions", "times"};
     if (!tools.next(em() * 7)) return;
     MatrixAxis& own = rows ? view.rows : view.columns;
@@ -74,7 +74,7 @@ void chooseOver(ViewContext& context, ToolRow& tools, SliceMatrixView& view, boo
     if (ImGui::IsItemHovered()) tooltip(rows ? "What rows differ in" : "What columns differ in");
 }
 
-void chooseAxis(volume::SpaceAxis& axis) {
+void choosePlaneAxis(volume::SpaceAxis& axis) {
     ImGui::SetNextItemWidth(em() * 3.4f);
     if (ImGui::BeginCombo("##axis", volume::kSpaceAxisNames[static_cast<std::size_t>(axis)].data())) {
         for (int i = 0; i < 3; ++i)
@@ -91,13 +91,13 @@ void chooseCount(ToolRow& tools, const char* id, int& count, int most, const cha
     slider(id, count, 1, most, count == 1 ? one : many);
 }
 
-void drawToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown) {
+void drawMatrixToolbar(ViewContext& context, SliceMatrixView& view, const std::vector<int>& shown) {
     const volume::DatasetInfo& info = context.source->info();
     ToolRow tools(context);
     chooseChannels(tools, info, view.channels, shown);
-    chooseOver(context, tools, view, true);
-    chooseOver(context, tools, view, false);
-    if (!view.over(MatrixAxis::Directions) && tools.next(em() * 3.4f)) chooseAxis(view.axis);
+    chooseMatrixSide(context, tools, view, true);
+    chooseMatrixSide(context, tools, view, false);
+    if (!view.over(MatrixAxis::Directions) && tools.next(em() * 3.4f)) choosePlaneAxis(view.axis);
     if (view.over(MatrixAxis::Positions)) chooseCount(tools, "##planes", view.planes, 12, "%d plane", "%d planes");
     if (view.over(MatrixAxis::Times)) chooseCount(tools, "##times", view.times, 24, "%d time", "%d times");
     SliceMatrix exported = sliceMatrix(context.session, drawnSource(context)->info(), view, shown);
@@ -136,8 +136,8 @@ PlaneFrame cellFrame(const PlanePicture& slice, const vis::WorldFrame& world, co
 }
 
 /// Cells as large as the pane has room for, but not below `least`: then the pane scrolls.
-MatrixLayout layOut(const ViewContext& context, const SliceMatrixView& view, const SliceMatrix& matrix,
-                    const vis::WorldFrame& world, ImVec2 least) {
+MatrixLayout layOutMatrix(const ViewContext& context, const SliceMatrixView& view, const SliceMatrix& matrix,
+                          const vis::WorldFrame& world, ImVec2 least) {
     const volume::DatasetInfo& info = context.source->info();
     const float rows = static_cast<float>(matrix.rows), columns = static_cast<float>(matrix.columns);
     MatrixLayout out;
@@ -168,7 +168,7 @@ MatrixLayout layOut(const ViewContext& context, const SliceMatrixView& view, con
     return out;
 }
 
-void drawNames(const MatrixLayout& layout, const SliceMatrix& matrix) {
+void drawMatrixNames(const MatrixLayout& layout, const SliceMatrix& matrix) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     for (int column = 0; column < matrix.columns; ++column) {
         const auto k = static_cast<std::size_t>(column);
@@ -188,8 +188,8 @@ void drawNames(const MatrixLayout& layout, const SliceMatrix& matrix) {
 }
 
 /// One for each parameter: at the right of rows, below columns.
-void drawLegends(const ViewContext& context, const SliceMatrixView& view, const MatrixLayout& layout,
-                 const SliceMatrix& matrix) {
+void drawMatrixLegends(const ViewContext& context, const SliceMatrixView& view, const MatrixLayout& layout,
+                       const SliceMatrix& matrix) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const auto legend = [&](int row, int column) {
         return legendOf(context.session, context.source->info(), matrix.at(row, column).shows.channel);
@@ -215,8 +215,8 @@ void drawLegends(const ViewContext& context, const SliceMatrixView& view, const 
             layout.cell.y, legend(row, 0));
 }
 
-void drawCell(ViewContext& context, PlaneState& state, const PlanePicture& slice, const PlaneFrame& frame, int index,
-              double share, const std::string& pane) {
+void drawMatrixCell(ViewContext& context, PlaneState& state, const PlanePicture& slice, const PlaneFrame& frame,
+                    int index, double share, const std::string& pane) {
     ImGui::PushID(index);
     useMouse(context, state, slice, frame);
     if (slice.ownTime && ImGui::IsItemActivated()) {
@@ -228,8 +228,8 @@ void drawCell(ViewContext& context, PlaneState& state, const PlanePicture& slice
     drawOver(context, state, slice, frame, {});
 }
 
-void drawCells(ViewContext& context, SliceMatrixCache& cache, const MatrixLayout& layout, const SliceMatrix& matrix,
-               const vis::WorldFrame& world, const std::string& pane) {
+void drawMatrixCells(ViewContext& context, SliceMatrixCache& cache, const MatrixLayout& layout,
+                     const SliceMatrix& matrix, const vis::WorldFrame& world, const std::string& pane) {
     cache.slices.resize(matrix.pictures.size());
     const std::vector<bool> values = shownValues(context, cache, matrix, pane);
     const ImVec2 lo = ImGui::GetWindowDrawList()->GetClipRectMin(), hi = ImGui::GetWindowDrawList()->GetClipRectMax();
@@ -244,8 +244,8 @@ void drawCells(ViewContext& context, SliceMatrixCache& cache, const MatrixLayout
             frame.plot.min = at, frame.plot.max = {at.x + size.x, at.y + size.y};
             if (at.x >= hi.x || at.y >= hi.y || frame.plot.max.x <= lo.x || frame.plot.max.y <= lo.y) continue;
             const int index = column * matrix.rows + row;
-            drawCell(context, cache.slices[static_cast<std::size_t>(index)], slice, frame, index,
-                     1 / static_cast<double>(cache.slices.size()), pane);
+            drawMatrixCell(context, cache.slices[static_cast<std::size_t>(index)], slice, frame, index,
+                           1 / static_cast<double>(cache.slices.size()), pane);
             if (!values[static_cast<std::size_t>(row * matrix.columns + column)])
                 addFittedWithBackdrop(*ImGui::GetWindowDrawList(), {at.x + size.x / 2, at.y + (size.y - em()) / 2},
                                       {0.5f, 0}, plotColors().faint, "no values", size.x);
@@ -265,7 +265,7 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
     const vis::WorldFrame world = vis::worldFrame(info, context.session.stretch);
     view.planes = std::clamp(view.planes, 1, 12);
     view.times = std::clamp(view.times, 1, 24);
-    drawToolbar(context, view, shown);
+    drawMatrixToolbar(context, view, shown);
     drawStretch(context);
     if (shown.empty()) return drawHint("No parameters", "This data set has only labels.");
     const SliceMatrix matrix = sliceMatrix(context.session, info, view, shown);
@@ -283,10 +283,10 @@ void drawSliceMatrixView(ViewContext& context, const std::string& pane, SliceMat
         ImGui::SetNextWindowContentSize({wide, 0});
         ImGui::BeginChild("cells", {0, 0}, false, ImGuiWindowFlags_HorizontalScrollbar);
     }
-    const MatrixLayout layout = layOut(context, view, matrix, world, {scrolled ? least.x : 1, least.y});
-    drawCells(context, cache, layout, matrix, world, pane);
-    if (context.decoration.title) drawNames(layout, matrix);
-    if (context.decoration.legend) drawLegends(context, view, layout, matrix);
+    const MatrixLayout layout = layOutMatrix(context, view, matrix, world, {scrolled ? least.x : 1, least.y});
+    drawMatrixCells(context, cache, layout, matrix, world, pane);
+    if (context.decoration.title) drawMatrixNames(layout, matrix);
+    if (context.decoration.legend) drawMatrixLegends(context, view, layout, matrix);
     if (scrolled) ImGui::EndChild();
 }
 

@@ -167,7 +167,7 @@ void drawNumbers(ViewContext& context, const SlicesView& view, const Readout& va
     const bool apart = layout.values.size().x > 0;
     within("legend", layout.numbers, [&](float room) {
         if (!readout || apart) return legend();
-        const std::string note = contourNote(context.source->info(), slice);
+        const std::string note = planeNote(context.source->info(), slice);
         const float left = room - legendBarHeight() - em() * 0.3f - ImGui::GetStyle().ItemSpacing.y -
                            (note.empty() ? 0 : ImGui::GetTextLineHeightWithSpacing());
         if (readoutHeight(values) <= left) {
@@ -195,7 +195,9 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     if (!channel) return drawHint("No parameters", "This data set has no parameter to show.");
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
     const Readout& readout = sharedReadout(context);
-    const PlaneContent shows{.channel = *channel, .lines = view.lines, .strokes = view.strokes};
+    const PlaneContent shows{.channel = *channel,
+                             .lines = view.lines,
+                             .strokes = timeAxisOf(context.session, info) ? vis::Strokes{} : view.strokes};
     drawSlicesTools(context, view, readout, shows);
     drawStretch(context);
 

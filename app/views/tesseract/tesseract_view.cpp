@@ -5,6 +5,7 @@
 #include "app/ui/keys.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/ui/widgets.h"
 #include "app/views/tesseract/tesseract_brush.h"
 #include "app/views/tesseract/tesseract_cloud.h"
 #include "app/views/tesseract/tesseract_controls.h"
