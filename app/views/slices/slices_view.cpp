@@ -197,7 +197,7 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     const Readout& readout = sharedReadout(context);
     const PlaneContent shows{.channel = *channel,
                              .lines = view.lines,
-                             .strokes = timeAxisOf(context.session, info) ? vis::Strokes{} : view.strokes};
+                             .strokes = info.timeAxis() ? vis::Strokes{} : view.strokes};
     drawSlicesTools(context, view, readout, shows);
     drawStretch(context);
 
