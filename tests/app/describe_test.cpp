@@ -5,6 +5,7 @@
 #include "volume/base/error.h"
 #include "volume/bricks/brick_layout.h"
 #include "volume/synthetic/branching.h"
+#include "volume/synthetic/bubbles.h"
 #include "volume/synthetic/casting.h"
 #include "volume/synthetic/fuel_cell.h"
 #include "volume/synthetic/marschner_lobb.h"
@@ -81,6 +82,7 @@ std::vector<DescribedStruct> everyStruct() {
     list.add<volume::MergeOptions>();
     list.add<volume::FuelCellSettings>();
     list.add<volume::MarschnerLobbSettings>();
+    list.add<volume::BubblesSettings>();
     list.add<volume::CastingSettings>();
     list.add<volume::BranchingSettings>();
     list.add<volume::MembraneSettings>();

@@ -198,7 +198,9 @@ void drawPiecesView(ViewContext& context, const std::string& pane, PiecesView& v
                    false);
     drawNote(tools, piecesNote(info, graph, asked));
     if (graph.pieces.empty()) {
-        const std::string none = "No sample at any time is in " + piecesName(info, asked) + ".";
+        const std::string none = graph.leftOutTracks > 0
+                                     ? piecesNote(info, graph, asked) + "."
+                                     : "No sample at any time belongs to " + piecesName(info, asked) + ".";
         return drawHint("No pieces", none.c_str());
     }
     drawGraph(context, cache, graph, asked, found->level == 0 && asked == question, view.events);
