@@ -72,6 +72,8 @@ for strength in 0 1.5; do
     "$tessera" render flow -o "$out/depth-shadows-${strength%.*}.png" --view volume --size "$size" --set "$cell" \
         --set "/depthMask/strength=$strength" --set '/paper={"color":[1,1,1],"tooth":0}' --set '/layers/2/visible=false'
 done
+"$tessera" render flow -o "$out/halos.png" --view volume --size "$size" --set "$cell" --set /layers/2/visible=false \
+    --set /layers/0/technique/halo=3 --set /layers/1/technique/halo=3 --set '/paper={"color":[1,1,1],"tooth":0}'
 # Strokes in slices
 base strokes lic --set "$cell"
 picture_of strokes strokes-colors
