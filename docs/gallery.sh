@@ -97,6 +97,25 @@ tubes() { # tubes CHANNEL FROM TO: those of one gas
         "\"radius\":0.014,\"from\":$2,\"to\":$3,\"look\":LOOK}}"
 }
 drawings tubes flow "$(tubes O2 '[0,0.5,0]' '[1,1,1]'),$(tubes H2 '[0,0,0]' '[1,0.5,1]')"
+# Particles
+base timelines timelines --set "$cell"
+picture_of timelines particles-timelines --set /views/volume/legend=false --set /camera/distance=1.5
+base speedlines speedlines --set "$cell"
+picture_of speedlines particles-speedlines --set /views/volume/legend=false --set /camera/distance=1.5
+base streams flow --set "$cell"
+particles() { # particles NAME CHANNEL FROM TO CHANNEL FROM TO MORE: flow of both gases
+    local both
+    both="$(for i in 0 1; do
+        echo "{\"name\":\"$2\",\"technique\":{\"type\":\"flow\",\"vector\":\"U\",\"channel\":\"$2\",\"from\":$3,\"to\":$4,$8}}"
+        [ $i = 1 ] || echo ,
+        set -- "$1" "$5" "$6" "$7" "$5" "$6" "$7" "$8"
+    done)"
+    picture_of streams "$1" --set /views/volume/legend=false --set /camera/distance=1.5 --set "/layers=[$both]"
+}
+particles particles-streaklines O2 '[0.25,0.6,0.02]' '[0.75,0.98,0.02]' H2 '[0.25,0.02,0.98]' '[0.75,0.4,0.98]' \
+    '"kind":"streaklines","seeds":"plane","count":12,"radius":0.006'
+particles particles-arrows O2 '[0,0.5,0]' '[1,1,1]' H2 '[0,0,0]' '[1,0.5,1]' \
+    '"kind":"bentArrows","seeds":"even","separation":0.14,"count":12,"length":0.35,"radius":0.013'
 # Classification
 for kind in post pre preintegrated; do
     signal "classification-$kind" --set "/layers=[$(volume rho "\"classification\":\"$kind\",\"shaded\":false")]" \

@@ -77,6 +77,30 @@ std::string planeText(const volume::DatasetInfo& info, const volume::SpaceTimePl
            numberInUnit(formatNumber(speed, usual / 1000), per);
 }
 
+std::string followsText(const volume::DatasetInfo& info, int axis, double position) {
+    if (!info.plane) return {};
+    const volume::SpaceTimePlane& plane = *info.plane;
+    const double size = plane.hi[plane.solved] - plane.lo[plane.solved];
+    Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (int corner = 0; corner < 8; ++corner) {
+        glm::dvec3 at;
+        for (int a = 0; a < 3; ++a) at[a] = (corner >> a & 1) != 0 ? info.bounds.hi[a] : info.bounds.lo[a];
+        at[axis] = position;
+        const double value = plane.pointAt(at)[plane.solved];
+        range = {std::min(range.lo, value), std::max(range.hi, value)};
+    }
+    const bool time = !plane.hasTimeAxis();
+    const LengthUnit unit = time ? LengthUnit{info.timeUnit} : suitableLength(info.lengthUnit, size);
+    const std::string name = time ? timeWord(info) : std::string(1, "xyz"[plane.solved]);
+    const double digits = size * unit.perUnit / 100;
+    if (range.hi - range.lo <= 1e-6 * size)
+        return name + " = " + formatQuantity(range.lo * unit.perUnit, unit.name, digits);
+    // What lies beyond the data is not there.
+    const double lo = std::max(range.lo, plane.lo[plane.solved]), hi = std::min(range.hi, plane.hi[plane.solved]);
+    return name + " " + formatNumber(lo * unit.perUnit, digits) + " to " +
+           formatQuantity(hi * unit.perUnit, unit.name, digits);
+}
+
 Range timesMet(const volume::SpaceTimePlane& plane) {
     if (plane.normal.w == 0) return {plane.lo.w, plane.hi.w};
     Range meets{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};

@@ -153,6 +153,7 @@ struct PlaneColumns {
     std::vector<std::string> planes;
     std::array<std::vector<double>, 2> along;
     std::array<std::vector<double>, 3> position;
+    std::vector<double> follows; ///< in a plane in space and time: the axis that it is solved for
     std::vector<std::vector<double>> values;
 };
 
@@ -174,6 +175,7 @@ void addSamples(PlaneColumns& columns, const volume::BrickSource& source, const 
                                                             .number(picture.along(place)[k] * picture.perUnit()[k]));
             for (int k = 0; k < 3; ++k)
                 columns.position[std::size_t(k)].push_back(place[k] * picture.positions[std::size_t(k)].unit.perUnit);
+            if (const auto& cut = source.info().plane) columns.follows.push_back(cut->pointAt(place)[cut->solved]);
         }
         for (std::size_t c = 0; c < channels.size(); ++c)
             for (const volume::ProbeValue& value : volume::probeAlong(source, channels[c], row, picture.time))
@@ -247,6 +249,11 @@ Table planesTable(const volume::BrickSource& source, const std::vector<PlanePict
         table.columns.push_back(
             {.name = label.name, .unit = label.unit.name, .numbers = std::move(columns.position[axis])});
     }
+    if (const auto& cut = source.info().plane)
+        table.columns.push_back(
+            {.name = cut->hasTimeAxis() ? std::string(1, "xyz"[cut->solved]) : timeWord(source.info()),
+             .unit = cut->hasTimeAxis() ? source.info().lengthUnit : source.info().timeUnit,
+             .numbers = std::move(columns.follows)});
     for (std::size_t c = 0; c < channels.size(); ++c) {
         const volume::Channel own = source.info().channel(channels[c]);
         table.columns.push_back({.name = own.name, .unit = own.unit, .numbers = std::move(columns.values[c])});

@@ -1,6 +1,7 @@
 #include "app/planes/plane_picture.h"
 
 #include "app/pane/axes3d.h"
+#include "app/pane/shown_plane.h"
 #include "app/pane/view_parts.h"
 #include "app/ui/ticks.h"
 
@@ -92,6 +93,8 @@ PlanePicture axisPlane(const Session& session, const volume::DatasetInfo& info, 
     picture.up = labels[static_cast<std::size_t>(up)];
     const double digits = tellingLength(info, normal, picture.maps.toSpace(picture.plane.at), 0.01) * unit.perUnit;
     picture.place = across.name + " = " + formatQuantity(position * unit.perUnit, unit.name, digits);
+    if (const std::string follows = followsText(info, normal, position); !follows.empty())
+        picture.place += ", " + follows;
     show(picture, session, info, shows);
     return picture;
 }

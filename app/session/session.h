@@ -78,7 +78,7 @@ struct DataRef {
     std::optional<codec::PackOptions> packed;      ///< unpacked data are shown as an archive packed so holds them
     bool originals = false;                        ///< packed data are shown beside those as computed
     std::string axis;                              ///< quantity that replaces the times, "" = none
-    std::optional<volume::TimeAxis> timeAxis;      ///< shows a plane at all times instead of the data
+    std::optional<volume::TimeAxis> timeAxis;      ///< shows a plane in space and time instead of the data
     std::optional<OtherData> other = {};           ///< its parameters are added as "T (other)"
     codec::RemoteOptions remote = {};              ///< how archives on other machines are read
     std::optional<DataFile> table = {};            ///< import.overTime when saved: found again as the files are
@@ -110,7 +110,9 @@ struct DataRef {
         visit(self.originals, FieldInfo{"originals", "With `packed`: also show the parameters as computed"});
         visit(self.axis, FieldInfo{"axis", "Quantity over time to use as the time axis, if it rises or falls "
                                            "throughout; otherwise it is listed first"});
-        visit(self.timeAxis, FieldInfo{"timeAxis", "Show time along an axis of space"});
+        visit(self.timeAxis,
+              FieldInfo{"timeAxis", "Show a plane in space and time in place of the data: time along an axis of "
+                                    "space, or any"});
         visit(self.other,
               FieldInfo{"other",
                         "Another data set; its parameters are added as \"T (other)\", interpolated onto this grid"});

@@ -42,7 +42,10 @@ Rake rakeOf(vis::Technique& technique) {
 
 /// The shape of a rake; nothing for layers without one.
 std::optional<volume::SeedShape> rakeShape(const vis::Technique& technique) {
-    if (const auto* flow = std::get_if<vis::FlowLayer>(&technique)) return flow->seeds;
+    if (const auto* flow = std::get_if<vis::FlowLayer>(&technique)) {
+        const bool timelines = flow->kind == vis::FlowKind::Timelines && flow->seeds != volume::SeedShape::Plane;
+        return timelines ? volume::SeedShape::Line : flow->seeds;
+    }
     const auto* glyphs = std::get_if<vis::GlyphLayer>(&technique);
     if (!glyphs || glyphs->place == vis::GlyphPlace::Cursor) return std::nullopt;
     if (glyphs->place == vis::GlyphPlace::Plane) return volume::SeedShape::Plane;

@@ -97,7 +97,7 @@ constexpr Consumer kConsumers[] = {
     {"sliceMatrix",     "F F . . . . . . . . . . . . . F . . . . F"},
     {"oblique",         "F F F F . . . . . . . . . . . F . . . . F"},
     {"shadowCube",      "F F F F F F F F F F F F F . F . . . . . F"},
-    {"tesseract",       "F F . . . F F . . . . . . . F . . . . . F"},
+    {"tesseract",       "F F F . . F F . . . . . . . F . . . . . F"},
     {"parallelCoordinates", "F F . . . F . . . . . F . . . F . . . . F"},
     {"scatter3d",       "F F . . . F . . . . . F . . . . . . . . F"},
     {"hyperSlice",      "F F F . . . . . . . . . . . . . . . . . F"},

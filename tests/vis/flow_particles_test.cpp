@@ -117,9 +117,9 @@ TEST(FlowParticles, TimelinesMoveOnFromTheirReleases) {
     layer.span = 4;
     layer.steps = 5; // one each second
     const auto placesAt = [&](double moment) {
-        std::map<long, int> places; // of the middles of tubes, in tenths
-        for (const glm::vec3& p : makeParticles(*source, layer, moment, glm::dvec3(1))->mesh.positions)
-            ++places[std::lround(p.x)];
+        std::map<long, int> places; // of the middles of tubes
+        const auto geometry = makeParticles(*source, layer, moment, glm::dvec3(1));
+        for (const glm::vec3& p : geometry->mesh.positions) ++places[std::lround(p.x)];
         std::vector<long> out;
         for (const auto& [x, count] : places) out.push_back(x);
         return out;
@@ -174,6 +174,31 @@ TEST(FlowParticles, OfASingleTimeAreThoseOfASteadyFlow) {
         if (kind == FlowKind::Pathlines) {
             EXPECT_NEAR(extentAlongX(geometry->mesh).lo, 0, 0.01);
             EXPECT_NEAR(extentAlongX(geometry->mesh).hi, 20, 0.01);
+        }
+    }
+}
+
+TEST(FlowBlur, CopiesStandWhereGlyphsCameFrom) {
+    const auto source = windAt({0}, [](double) { return 2.0; });
+    FlowLayer layer{.vector = "U", .channel = "f"};
+    layer.kind = FlowKind::Cones;
+    layer.seeds = volume::SeedShape::Line;
+    layer.from = layer.to = glm::vec3(0.5f);
+    layer.count = 1;
+    layer.size = 0.1f; // 2
+    const auto sharp = makeFlow(*source, layer, 0, glm::dvec3(1));
+    EXPECT_TRUE(sharp->tints.empty());
+    layer.blur = 4;
+    const auto geometry = makeFlow(*source, layer, 0, glm::dvec3(1));
+    const std::size_t each = sharp->mesh.positions.size();
+    ASSERT_EQ(geometry->mesh.positions.size(), 5 * each);
+    ASSERT_EQ(geometry->tints.size(), 5 * each);
+    for (std::size_t v = 0; v < 5 * each; ++v) {
+        const double copy = double(v / each);
+        EXPECT_NEAR(geometry->mesh.positions[v].x, sharp->mesh.positions[v % each].x - 0.5 * copy, 1e-4);
+        EXPECT_LT(geometry->tints[v].r, 0) << "coloured by the parameter";
+        if (v >= each) {
+            EXPECT_LT(geometry->tints[v].a, geometry->tints[v - each].a) << "fading";
         }
     }
 }

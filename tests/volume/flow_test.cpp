@@ -134,6 +134,27 @@ TEST(Streamline, TheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(many, streamlines(turning, seeds, {.longest = 20}));
 }
 
+// One interpolation for all components is the same as one for each, also beside absent samples and at the borders.
+TEST(VectorGrids, GiveWhatTheirComponentsDo) {
+    const auto wave = [](glm::dvec3 p) { return glm::dvec3(std::sin(p.x), std::cos(p.y * p.z), p.x * p.y); };
+    const auto hole = [](glm::dvec3 p) { return glm::distance(p, kMiddle) < 2; };
+    const VectorGrid grid = sampledVector(LatticeKind::CC, wave, hole);
+    int absent = 0;
+    for (const glm::dvec3& p :
+         placeSeeds({.from = {0, 0, 0}, .to = {16, 16, 8}, .count = 2000}, [](glm::dvec3) { return 1.0; })) {
+        const auto vector = grid.at(p);
+        const auto x = valueAt(grid.x, p), y = valueAt(grid.y, p), z = valueAt(grid.z, p);
+        ASSERT_EQ(vector.has_value(), x && y && z);
+        absent += !vector;
+        if (vector) {
+            EXPECT_EQ(*vector, glm::dvec3(*x, *y, *z));
+        }
+    }
+    EXPECT_GT(absent, 10);
+    EXPECT_EQ(grid.at({16, 16, 8})->z, valueAt(grid.z, {16, 16, 8}));
+    EXPECT_FALSE(grid.at({16.001, 8, 4}));
+}
+
 // Wind that turns with time: particles go around circles though every streamline is straight.
 TEST(Pathline, OfATurningWindIsACircle) {
     const ChangingField wind = [](glm::dvec3, double t) -> std::optional<glm::dvec3> {

@@ -303,7 +303,7 @@ TEST(EvenLines, OfAVortexDoNotRunOverThemselves) {
     const EvenLines even =
         evenLines(trace, [](glm::dvec3) { return true; }, {.from = {-3, -3, 0}, .to = {3, 3, 0}, .separation = 0.7});
     for (const auto& line : even.lines) {
-        EXPECT_LT(lengthOfPath(line), std::max(kTurn * glm::length(line.front()), 2.1) + 0.8) << "once around";
+        EXPECT_LT(lengthOfPath(line), std::max(kTurn * glm::length(line.front()), 1.1) + 0.9) << "once around";
     }
 }
 

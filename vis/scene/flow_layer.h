@@ -55,7 +55,7 @@ struct FlowLayer {
     float length = 2;           ///< of a line in each direction, in fractions of the data's longest edge
     float speed = 1;            ///< factor on the speed of particles; 1: true to the units
     bool ignoreUnits = false;   ///< a vector of 1 moves 1 length per time, whatever the units
-    double span = 0;            ///< unit of the times of the data, 0: chosen (particleSpan in flow_data.h)
+    double span = 0;            ///< unit of the times of the data, 0: chosen, as its help says
     int steps = 8;              ///< timelines of each line of seeds
     bool together = false;      ///< timelines are released at the time shown; else one after another until then
     float band = 0;             ///< width of timelines, in shares of the time between two
@@ -66,6 +66,7 @@ struct FlowLayer {
     float radius = 0.004f;      ///< of a tube, in fractions of the longest edge as drawn
     float contextWidth = 1;     ///< of tubes and glyphs at degree of interest 0, as a share of that at 1
     float size = 0.05f;         ///< of the longest glyph, in fractions of the longest edge as drawn
+    int blur = 0;               ///< fading copies behind each arrow or cone
     bool scaled = true;         ///< glyph length proportional to the vector, else constant
     GeometryStyle style{.color = glm::vec3(0.75f)}; ///< does not change the geometry
     bool operator==(const FlowLayer&) const = default;
@@ -218,6 +219,13 @@ struct FlowLayer {
               FieldInfo{.key = "scaled",
                         .doc = "Make the length of glyphs proportional to the vector; else all have the same length",
                         .applies = isFlowGlyph(self.kind),
+                        .group = kSizes});
+        visit(self.blur,
+              FieldInfo{.key = "blur",
+                        .doc = "Motion blur: so many fading copies of each arrow or cone where it came from, the last "
+                               "where the fastest was one length of it before",
+                        .range = Range{0, 12},
+                        .applies = self.kind == FlowKind::Arrows || self.kind == FlowKind::Cones,
                         .group = kSizes});
         visit(self.style.lineWidth,
               FieldInfo{.key = "lineWidth",

@@ -2,7 +2,7 @@
 
 #include "vis/shapes/flow_data.h"
 #include "vis/shapes/line_gatherer.h"
-#include "volume/field/time_pair.h"
+#include "volume/flow/paths.h"
 #include "volume/mesh/surface_mesh.h"
 
 #include <algorithm>
@@ -54,28 +54,69 @@ std::shared_ptr<const Geometry> linesAlong(const volume::BrickSource& source, co
     return out;
 }
 
+/// What the glyphs of a layer have in common.
+struct GlyphWork {
+    const volume::BrickSource& source;
+    const FlowLayer& layer;
+    const FlowData& data;
+    glm::dvec3 stretch;
+    const Width& width;
+    double greatest = 0; ///< vector of those drawn, which gets the wanted length
+
+    volume::SurfaceMesh meshOf(const std::vector<Glyph>& glyphs) const {
+        return layer.kind == FlowKind::Arrows ? arrows(glyphs, stretch) : cones(glyphs, stretch);
+    }
+    Glyph glyph(glm::dvec3 place, glm::dvec3 vector, float scalar) const {
+        const volume::Lattice& lattice = source.info().lattice;
+        const double share = (layer.scaled ? glm::length(vector) / greatest : 1) * (width ? width(place) : 1);
+        const glm::dvec3 drawnWay = glm::normalize(drawnDirection(lattice, place, vector) * stretch);
+        return {lattice.axes.toSheet(place) - volume::originFor(source.info().bounds),
+                drawnWay * (share * double(layer.size) * longestDrawn(source, stretch)), scalar};
+    }
+};
+
+/// Adds copies where the glyphs' particles were before in the flow of this time, fainter the earlier.
+void addBlur(Geometry& geometry, const GlyphWork& work, const std::vector<glm::dvec3>& seeds,
+             const std::vector<float>& scalars) {
+    const glm::dvec3 size = work.source.info().bounds.size();
+    const double whole = double(work.layer.size) * std::max({size.x, size.y, size.z}) / work.greatest;
+    const volume::ChangingField same = [&](glm::dvec3 place, double) { return work.data.field(place); };
+    volume::PathSettings settings;
+    settings.lattice = work.data.lattice;
+    geometry.tints.assign(geometry.mesh.positions.size(), glm::vec4(-1, 0, 0, 1));
+    geometry.translucent = true;
+    for (int copy = 1; copy <= work.layer.blur; ++copy) {
+        const double share = double(copy) / work.layer.blur;
+        std::vector<Glyph> glyphs;
+        for (std::size_t i = 0; i < seeds.size(); ++i) {
+            const auto place = volume::carried(same, seeds[i], 0, -whole * share, settings);
+            const auto vector = place ? work.data.field(*place) : std::nullopt;
+            if (vector && glm::length(*vector) > work.data.slowest)
+                glyphs.push_back(work.glyph(*place, *vector, scalars[i]));
+        }
+        appendMesh(geometry.mesh, work.meshOf(glyphs));
+        geometry.tints.resize(geometry.mesh.positions.size(), glm::vec4(-1, 0, 0, 0.5 * (1.1 - share)));
+    }
+}
+
 std::shared_ptr<const Geometry> glyphsAt(const volume::BrickSource& source, const FlowLayer& layer,
                                          const FlowData& data, const std::vector<glm::dvec3>& seeds, double moment,
                                          glm::dvec3 stretch, const Width& width, const Progress& progress) {
     const glm::dvec3 origin = volume::originFor(source.info().bounds);
-    const volume::Lattice& lattice = source.info().lattice;
     auto out = std::make_shared<Geometry>();
     std::vector<glm::vec3> places;
     for (const glm::dvec3& seed : seeds) places.emplace_back(seed - origin);
     const std::vector<float> scalars =
         valuesOver(source, layer.channel, data.level, places, std::vector<double>(places.size(), moment), progress);
-    double greatest = 0; // largest of those drawn, which gets the wanted length
-    for (const glm::dvec3& seed : seeds) greatest = std::max(greatest, glm::length(*data.field(seed)));
-    std::vector<Glyph> glyphs;
-    for (std::size_t i = 0; i < seeds.size(); ++i) {
-        const glm::dvec3 vector = *data.field(seeds[i]); // not zero: seeds lie where it flows
-        const double share = (layer.scaled ? glm::length(vector) / greatest : 1) * (width ? width(seeds[i]) : 1);
-        const glm::dvec3 drawnWay = glm::normalize(drawnDirection(lattice, seeds[i], vector) * stretch);
-        glyphs.push_back({lattice.axes.toSheet(seeds[i]) - origin,
-                          drawnWay * (share * double(layer.size) * longestDrawn(source, stretch)), scalars[i]});
+    GlyphWork work{source, layer, data, stretch, width};
+    for (const glm::dvec3& seed : seeds) work.greatest = std::max(work.greatest, glm::length(*data.field(seed)));
+    std::vector<Glyph> glyphs; // no vector is zero: seeds lie where it flows
+    for (std::size_t i = 0; i < seeds.size(); ++i)
+        glyphs.push_back(work.glyph(seeds[i], *data.field(seeds[i]), scalars[i]));
+    if (layer.kind != FlowKind::Hedgehogs) {
+        out->mesh = work.meshOf(glyphs);
+        if (layer.blur > 0 && !glyphs.empty()) addBlur(*out, work, seeds, scalars);
     }
-    if (layer.kind == FlowKind::Arrows) out->mesh = arrows(glyphs, stretch);
-    if (layer.kind == FlowKind::Cones) out->mesh = cones(glyphs, stretch);
     out->mesh.origin = out->lines.origin = origin;
     if (layer.kind == FlowKind::Hedgehogs)
         for (const Glyph& glyph : glyphs) {

@@ -106,9 +106,7 @@ std::vector<SeedLine> seedLinesOf(const ParticleWork& work) {
     if (work.layer.seeds != volume::SeedShape::Plane) return {{from, to}};
     const volume::AxisMaps& axes = work.info().lattice.axes;
     const glm::dvec3 lo = axes.toSheet(from), hi = axes.toSheet(to), edges = glm::abs((hi - lo) * work.stretch);
-    int across = 0;
-    for (int axis = 1; axis < 3; ++axis)
-        if (edges[axis] < edges[across]) across = axis;
+    const int across = volume::thinnestAxis(edges);
     int along = (across + 1) % 3, onward = (across + 2) % 3;
     const glm::dvec3 flow = glm::abs(work.data.field(axes.toSpace((lo + hi) * 0.5)).value_or(glm::dvec3(0)));
     if (flow[along] > flow[onward]) std::swap(along, onward);

@@ -15,7 +15,7 @@ namespace tessera::volume {
 namespace {
 
 constexpr double kPointsApart = 0.25;  ///< of the separation: what stands for a line in the grid
-constexpr double kOwnWay = 3;          ///< separations along a line within which it may be near to itself
+constexpr double kOwnWay = 1.6;        ///< separations along a line within which it may be near to itself
 constexpr double kMostGridSeeds = 2e5; ///< of the grid that is searched for empty places
 
 /// Points of lines in cells as large as the separation.

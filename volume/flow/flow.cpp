@@ -47,6 +47,54 @@ std::vector<glm::dvec3> halfLine(const ChangingField& field, glm::dvec3 place, g
     return out;
 }
 
+/// The samples around a place in a CC lattice and their weights, which are those of all components and times: the
+/// interpolation of valueAt() where no sample is of a part.
+struct Around {
+    std::size_t near = 0, indices[8] = {};
+    double weights[8] = {};
+    int count = 0;
+    bool even = true;
+
+    Around(const Lattice& lattice, glm::dvec3 position) : even(lattice.isEven()) {
+        near = lattice.index(lattice.nearest(position));
+        const glm::dvec3 cells = lattice.between(position), base = glm::floor(cells), f = cells - base;
+        const glm::ivec3 first(base), last = lattice.size - 1;
+        const glm::ivec3 sides[2] = {glm::clamp(first, glm::ivec3(0), last),
+                                     glm::clamp(first + 1, glm::ivec3(0), last)};
+        const glm::dvec3 shares[2] = {1.0 - f, f};
+        for (int z = 0; z < 2; ++z)
+            for (int y = 0; y < 2; ++y)
+                for (int x = 0; x < 2; ++x) {
+                    const double weight = shares[x].x * shares[y].y * shares[z].z;
+                    if (weight == 0) continue;
+                    indices[count] = lattice.index({sides[x].x, sides[y].y, sides[z].z});
+                    weights[count++] = weight;
+                }
+    }
+    std::optional<double> valueOf(const SampleGrid& grid) const {
+        Blend blend;
+        for (int i = 0; i < count; ++i)
+            blend.add(weights[i], {double(grid.values[indices[i]]), grid.isPresent(indices[i])});
+        return even ? blend.value() : blend.valueInCellOf({double(grid.values[near]), grid.isPresent(near)});
+    }
+    std::optional<glm::dvec3> vectorOf(const VectorGrid& grid) const {
+        const auto a = valueOf(grid.x);
+        const auto b = a ? valueOf(grid.y) : std::nullopt;
+        const auto c = b ? valueOf(grid.z) : std::nullopt;
+        return c ? std::optional(glm::dvec3(*a, *b, *c)) : std::nullopt;
+    }
+};
+
+bool contains(const Box& box, glm::dvec3 place) {
+    return !glm::any(glm::lessThan(place, box.lo)) && !glm::any(glm::greaterThan(place, box.hi));
+}
+
+/// Whether Around does for this grid.
+bool isPlain(const VectorGrid& grid) {
+    return grid.x.lattice.kind == LatticeKind::CC && grid.x.parts.empty() && grid.y.parts.empty() &&
+           grid.z.parts.empty();
+}
+
 } // namespace
 
 std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position) {
@@ -70,8 +118,8 @@ std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position) {
 }
 
 std::optional<glm::dvec3> VectorGrid::at(glm::dvec3 position) const {
-    if (glm::any(glm::lessThan(position, bounds.lo)) || glm::any(glm::greaterThan(position, bounds.hi)))
-        return std::nullopt;
+    if (!contains(bounds, position)) return std::nullopt;
+    if (isPlain(*this)) return Around(x.lattice, position).vectorOf(*this);
     const auto a = valueAt(x, position);
     const auto b = a ? valueAt(y, position) : std::nullopt;
     const auto c = b ? valueAt(z, position) : std::nullopt;
@@ -112,10 +160,20 @@ std::optional<glm::dvec3> VectorSeries::at(glm::dvec3 position, double time) con
     if (times_.size() == 1) return frame(0).at(position);
     if (!(time >= times_.front() && time <= times_.back())) return std::nullopt;
     const auto after = std::size_t(std::lower_bound(times_.begin(), times_.end(), time) - times_.begin());
-    const auto b = frame(after).at(position);
-    if (times_[after] == time || !b) return b;
-    const auto a = frame(after - 1).at(position);
-    if (!a) return std::nullopt;
+    const VectorGrid& later = frame(after);
+    if (times_[after] == time) return later.at(position);
+    const VectorGrid& earlier = frame(after - 1);
+    if (!contains(later.bounds, position)) return std::nullopt;
+    std::optional<glm::dvec3> a, b;
+    if (isPlain(later) && isPlain(earlier)) {
+        const Around around(later.x.lattice, position);
+        b = around.vectorOf(later);
+        if (b) a = around.vectorOf(earlier);
+    } else {
+        b = later.at(position);
+        if (b) a = earlier.at(position);
+    }
+    if (!a || !b) return std::nullopt;
     const double share = (time - times_[after - 1]) / (times_[after] - times_[after - 1]);
     return *a * (1 - share) + *b * share;
 }

@@ -195,9 +195,8 @@ void drawSlicesView(ViewContext& context, const std::string& pane, SlicesView& v
     if (!channel) return drawHint("No parameters", "This data set has no parameter to show.");
     SlicesCache& cache = cacheOf<SlicesCache>(context, pane);
     const Readout& readout = sharedReadout(context);
-    const PlaneContent shows{.channel = *channel,
-                             .lines = view.lines,
-                             .strokes = timeAxisOf(context.session, info) ? vis::Strokes{} : view.strokes};
+    const PlaneContent shows{
+        .channel = *channel, .lines = view.lines, .strokes = info.timeAxis() ? vis::Strokes{} : view.strokes};
     drawSlicesTools(context, view, readout, shows);
     drawStretch(context);
 

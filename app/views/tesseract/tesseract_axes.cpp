@@ -1,6 +1,7 @@
 #include "app/views/tesseract/tesseract_axes.h"
 
-#include "app/ui/ticks.h"
+#include "app/ui/time_text.h"
+#include "app/values/place_text.h"
 #include "vis/scene/camera.h"
 
 #include <algorithm>
@@ -10,14 +11,14 @@
 namespace tessera::app {
 
 std::vector<TesseractAxis> tesseractAxes(const volume::DatasetInfo& info, const TesseractView& view) {
-    const LengthUnit unit = suitableLength(info.lengthUnit, glm::length(info.bounds.size()));
+    const auto units = axisUnits(info, glm::length(info.bounds.size()));
     std::vector<TesseractAxis> axes;
     for (int axis = 0; axis < 3; ++axis)
-        axes.push_back({.name = std::string(1, "xyz"[axis]),
+        axes.push_back({.name = info.timeAxis() == axis ? timeWord(info) : std::string(1, "xyz"[axis]),
                         .channel = {},
                         .range = {info.bounds.lo[axis], info.bounds.hi[axis]},
-                        .perUnit = unit.perUnit,
-                        .unit = unit.name,
+                        .perUnit = units[std::size_t(axis)].perUnit,
+                        .unit = units[std::size_t(axis)].name,
                         .even = !info.lattice.axes[axis]});
     const auto parameter = [&](int channel) {
         const volume::Channel known = info.channel(channel);

@@ -5,6 +5,7 @@
 #include "app/queries/readout.h"
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/values/place_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -162,10 +163,10 @@ std::optional<std::size_t> drawReading(ViewContext& context, const TesseractClou
     const Range range = info.channelRange(known);
     const LengthUnit unit = suitableLength(info.lengthUnit, glm::length(info.bounds.size()));
     std::string text = known.name + " = " + formatQuantity(value(0), known.unit, (range.hi - range.lo) / 2000);
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3 && !info.plane; ++axis)
         text += (axis == 0 ? "\n" : ", ") +
                 formatNumber(place[axis] * unit.perUnit, tellingLength(info, axis, place, 1.0 / 500) * unit.perUnit);
-    text += " " + prettyUnit(unit.name);
+    text += info.plane ? "\n" + pointText(info, place, 1.0 / 500) : " " + prettyUnit(unit.name);
     if (info.times.size() > 1) text += "\n" + timeText(info, static_cast<double>(samples.times[point.sample]));
     const vis::CloudStyle& style = *cloud.style;
     for (std::size_t axis = 3; axis < frame.axes.size(); ++axis) {
