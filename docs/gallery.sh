@@ -72,11 +72,15 @@ for strength in 0 1.5; do
     "$tessera" render flow -o "$out/depth-shadows-${strength%.*}.png" --view volume --size "$size" --set "$cell" \
         --set "/depthMask/strength=$strength" --set '/paper={"color":[1,1,1],"tooth":0}' --set '/layers/2/visible=false'
 done
+"$tessera" render flow -o "$out/halos.png" --view volume --size "$size" --set "$cell" --set /layers/2/visible=false \
+    --set /layers/0/technique/halo=3 --set /layers/1/technique/halo=3 --set '/paper={"color":[1,1,1],"tooth":0}'
 # Strokes in slices
 base strokes lic --set "$cell"
 picture_of strokes strokes-colors
-picture_of strokes strokes-grey --set /layers/0/technique/strokes/grey=true --set /layers/1/technique/strokes/grey=true
-picture_of strokes strokes-speed --set /layers/0/technique/strokes/bySpeed=true --set /layers/1/technique/strokes/bySpeed=true
+for look in grey bySpeed; do
+    picture_of strokes "strokes-${look,,}" --set "/layers/0/technique/strokes/$look=true" \
+        --set "/layers/1/technique/strokes/$look=true" --set "/layers/2/technique/strokes/$look=true"
+done
 # Drawings of four things in four styles, for print
 drawings() { # drawings BASE NAME LAYERS ARGUMENTS...: LAYERS contain LOOK in place of their look
     local from=$1 name=$2 layers=$3

@@ -86,8 +86,10 @@ TEST(SessionTest, FitGivesStrokesAVectorOfTheDataOrNone) {
         Session session = defaultSession(info, {});
         session.layers = {{"stroked", true, vis::SliceLayer{.channel = "T", .strokes = {.vector = "wind"}}},
                           {"bare", true, vis::SliceLayer{.channel = "T"}}};
-        session.views["slices"] = SlicesView{.channel = "T", .strokes = {.vector = "wind"}};
-        session.views["oblique"] = ObliqueView{.channel = "T"};
+        SlicesView slices;
+        slices.strokes.vector = "wind";
+        session.views["slices"] = slices;
+        session.views["oblique"] = ObliqueView{};
         std::vector<std::string> messages;
         fitSession(session, info, messages);
         const std::string wanted = any ? "V" : "";

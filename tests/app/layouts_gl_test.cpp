@@ -106,7 +106,7 @@ const std::vector<Shipped>& shipped() {
          "data history layers scatterMatrix slices statistics timeline transfer volume",
          "T [K] 353.17 .. 356.60; O2 [mol/m³] 0.02 .. 6.22; O2 [mol/m³] = 2.2; |U| [m/s] 0.00 .. 2.83",
          {{"volume", Cold, 0.0303}, {"volume", Warm, 0.0799}, {"scatterMatrix", Orange, 0}}},
-        {"lic", "data layers slices timeline transfer volume", "O2 [mol/m³] 0.02 .. 6.22; T [K] 353.17 .. 356.60", {}},
+        {"lic", "data layers slices timeline transfer volume", "T [K] 353.17 .. 356.60; O2 [mol/m³] 0.02 .. 6.22", {}},
         {"overTime",
          "data layers profile profile-2 slices timeline transfer volume",
          "H2 [mol/m³] 24.48 .. 33.11",
@@ -122,7 +122,7 @@ const std::vector<Shipped>& shipped() {
          "data history layers log parallelCoordinates slices timeline transfer volume",
          kTemperature,
          {{"parallelCoordinates", Orange, 0.0136}}},
-        {"pieces", "data layers pieces slices timeline transfer volume", "gas 0.00 .. 1.00", {{"volume", Green, 0.01}}},
+        {"pieces", "data layers pieces slices timeline transfer volume", "gas 0.00 .. 1.00", {}},
         {"shadowCube",
          "data layers shadowCube slices timeline transfer",
          kTemperature,
@@ -198,6 +198,8 @@ protected:
             settings["nx"] = settings["ny"] = settings["nz"] = 24;
         else if (request.data->model == "branching-pulse")
             settings = {{"nx", 36}, {"ny", 22}, {"nz", 11}, {"times", 20}};
+        else if (request.data->model == "bubbles")
+            settings = {{"nx", 18}, {"ny", 18}, {"nz", 36}, {"times", 7}};
         else
             settings = {{"nx", 7}, {"ny", 13}, {"nz", 40}};
         opened = open(request);

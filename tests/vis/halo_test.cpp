@@ -19,6 +19,7 @@ struct HaloScene {
         info.lattice.size = glm::ivec3(11);
         info.bounds = {glm::dvec3(0), glm::dvec3(10)};
         info.parameters.resize(1);
+        info.parameters[0].name = "v";
         info.parameters[0].ranges = {{0, 1}};
         scene.camera.projection = Projection::Orthographic;
         scene.camera.orientation = {1, 0, 0, 0};

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <map>
 #include <numbers>
@@ -144,7 +145,6 @@ TEST(Pieces, NumbersAreThoseOfAFloodFillOnUnevenCells) {
     const PieceGraph graph = findPieces(*source, {.value = 0.8});
     std::size_t next = 0;
     std::vector<std::vector<ByHand>> hands;
-    std::vector<int> timeOf;
     for (int t = 0; t < 3; ++t) {
         hands.push_back(byHand(*source, double(0.8f), t));
         for (const ByHand& hand : hands.back()) {

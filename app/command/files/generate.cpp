@@ -80,12 +80,13 @@ void listSettings(const std::string& model) {
     const volume::CastingSettings casting;
     const volume::MembraneSettings membrane;
     const volume::BubblesSettings bubbles;
+    const volume::BranchingSettings pulse;
     if (model == "marschner-lobb")
         volume::MarschnerLobbSettings::describe(signal, PrintSetting());
     else if (model == "casting")
         volume::CastingSettings::describe(casting, PrintSetting());
     else if (model == "branching-pulse")
-        volume::BranchingSettings::describe(volume::BranchingSettings(), PrintSetting());
+        volume::BranchingSettings::describe(pulse, PrintSetting());
     else if (model == "membrane")
         volume::MembraneSettings::describe(membrane, PrintSetting());
     else if (model == "bubbles")
