@@ -27,6 +27,7 @@ TEST(Stereo, EyesSeeApartAsOffAxisProjectionSays) {
         const Stereo stereo{.kind = StereoKind::Anaglyph, .eyeDistance = 0.08f, .convergence = convergence};
         const Camera left = eyeCamera(camera, stereo, Eye::Left), right = eyeCamera(camera, stereo, Eye::Right);
         EXPECT_EQ(left.aperture, 0) << "no depth of field";
+        for (const int pass : {0, 1, 5}) EXPECT_EQ(lensCamera(left, pass, 8).lens, left.lens) << "in every pass";
         const double apart = 0.08 * double(camera.distance), same = double(convergence) * double(camera.distance);
         const double half = std::tan(glm::radians(double(camera.fieldOfView)) / 2) * kAspect;
         const glm::dvec3 forward = forwardOf(camera);

@@ -30,18 +30,18 @@ TEST(Branching, EachPlaceHasItsPulseWhenThatArrives) {
 }
 
 TEST(Branching, IsAbsentOutsideThePipe) {
-    const Dataset data = makeModel("branching-pulse", {{"nx", 41}, {"ny", 25}, {"nz", 13}, {"times", 5}});
+    const Dataset data = makeModel("branching-pulse", {{"nx", 31}, {"ny", 19}, {"nz", 9}, {"times", 5}});
     const Field field = data.read(1, 0, 3);
     const Lattice& lattice = data.info.lattice;
     int inside = 0;
-    for (int k = 0; k < 13; ++k)
-        for (int j = 0; j < 25; ++j)
-            for (int i = 0; i < 41; ++i) {
+    for (int k = 0; k < 9; ++k)
+        for (int j = 0; j < 19; ++j)
+            for (int i = 0; i < 31; ++i) {
                 const glm::dvec3 at = lattice.position({i, j, k});
                 double away = 1; // from the axes, by brute force
-                for (double along = 0; along < 0.25; along += 5e-4)
+                for (double along = 0; along < 0.25; along += 1e-3)
                     for (const bool slow : {false, true}) away = std::min(away, glm::distance(at, onAxis(along, slow)));
-                if (std::abs(away - Branching::kRadius) < 1e-4) continue;
+                if (std::abs(away - Branching::kRadius) < 2e-4) continue;
                 const std::size_t sample = lattice.index({i, j, k});
                 ASSERT_EQ(field.present(sample), away < Branching::kRadius) << i << " " << j << " " << k;
                 if (!field.present(sample)) continue;
@@ -49,7 +49,7 @@ TEST(Branching, IsAbsentOutsideThePipe) {
                 EXPECT_NEAR(field.value(sample), Branching::tracer(at, data.info.times[3]), 1e-5);
                 EXPECT_LE(field.value(sample), data.info.parameters[1].ranges[0].hi);
             }
-    EXPECT_GT(inside, 500);
+    EXPECT_GT(inside, 200);
     EXPECT_THROW(makeModel("branching-pulse", {{"nx", 2}}), Error);
 }
 

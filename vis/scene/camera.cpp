@@ -113,7 +113,7 @@ double blurRadius(const Camera& camera, double depth) {
 Camera lensCamera(Camera camera, int pass, int count) {
     const double radius = camera.aperture / 2 * std::sqrt(pass / std::max(count - 1.0, 1.0)),
                  angle = pass * kGoldenAngle;
-    camera.lens = glm::vec2(radius * std::cos(angle), radius * std::sin(angle));
+    camera.lens += glm::vec2(radius * std::cos(angle), radius * std::sin(angle)); // from that of one eye of two
     return camera;
 }
 

@@ -114,10 +114,12 @@ std::string cloudText(const TesseractCloud& cloud, const volume::DatasetInfo& in
     text += formatShare(samples.share) + " of the lattice";
     if (view.fourth.empty() && samples.timesRead < int(info.times.size()))
         text += ", " + formatCount(samples.timesRead) + " of " + formatCount(double(info.times.size())) + " times";
-    const bool grid = info.lattice.kind == volume::LatticeKind::CC;
-    if (view.samples == volume::SampleLattice::D4)
-        text += grid ? "; a D4* lattice: every other sample in space and time"
-                     : "; a D4* lattice: one grid of two at each time";
+    if (view.samples == volume::SampleLattice::D4) {
+        const bool grid = info.lattice.kind == volume::LatticeKind::CC;
+        text += !view.fourth.empty() ? "; of a D4* lattice those at this time"
+                : grid               ? "; a D4* lattice: every other sample in space and time"
+                                     : "; a D4* lattice: one grid of two at each time";
+    }
     return moreComing ? text + "; more are being read" : text;
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<const char*, 3> kHandWords{"drag turns", "drag selects a box", "drag selects by a lasso"};
 
 void chooseHand(ToolRow& tools, TesseractHand& hand) {
-    const float width = em() * 7;
+    const float width = em() * 9.5f;
     if (!tools.next(width)) return;
     ImGui::SetNextItemWidth(width);
     if (ImGui::BeginCombo("##hand", kHandWords[std::size_t(hand)])) {

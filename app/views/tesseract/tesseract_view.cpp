@@ -97,10 +97,9 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     if (context.decoration.title) { // above the legends: at the left it would lie over the body
         addFittedWithBackdrop(draw, {max.x - em() * 0.5f, frame.min.y + em() * 0.4f}, {1, 0}, colors.faint, title,
                               max.x - frame.min.x - em());
-        const ImVec2 at{frame.min.x + em() * 0.5f, max.y - em() * 0.4f};
-        addFittedWithBackdrop(draw, at, {0, 1}, colors.faint, drawn, frame.max.x - frame.min.x - em());
-        const ImVec2 size = ImGui::CalcTextSize(drawn.c_str());
-        taken.push_back({{at.x, at.y - size.y}, {at.x + size.x, at.y}});
+        const ImVec2 at{max.x - em() * 0.5f, frame.min.y + em() * 1.9f}, size = ImGui::CalcTextSize(drawn.c_str());
+        addFittedWithBackdrop(draw, at, {1, 0}, colors.faint, drawn, max.x - frame.min.x - em());
+        taken.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
     }
     if (!view.showLegend || !context.decoration.legend)
         return context.decoration.axes ? drawAxisNames4(draw, frame, std::move(taken)) : void();

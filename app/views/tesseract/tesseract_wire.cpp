@@ -220,9 +220,9 @@ void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame, std::vector<s
     for (std::size_t axis = 0; axis < count; ++axis) {
         const vis::PointN to = vis::cornerOf(corner ^ 1 << axis, frame.half, frame.count);
         const bool high = to[axis] > 0;
-        here += (axis == 0 ? "" : axis < 3 ? ", " : "; ") + endText(frame.axes[axis], !high);
         const ImVec2 a = pixel(from), b = pixel(to);
-        if (std::hypot(b.x - a.x, b.y - a.y) < em()) continue; // seen along it
+        if (std::hypot(b.x - a.x, b.y - a.y) < em()) continue; // seen along it: both ends are there
+        here += (here.empty() ? "" : axis < 3 ? ", " : "; ") + endText(frame.axes[axis], !high);
         texts.write(pixel(between(from, to, 0.6)), colorOf(axis), frame.axes[axis].name);
         texts.write(b, colorOf(axis), endText(frame.axes[axis], high));
     }
