@@ -67,14 +67,18 @@ std::vector<MatrixSlice> slicesAlong(MatrixAxis what, const MatrixSlice& base, c
     return out;
 }
 
-std::string nameOfSlice(MatrixAxis what, const volume::DatasetInfo& info, const MatrixSlice& slice,
-                        const PlanePicture& picture) {
+/// Planes across several directions have no position in common, but a share of the way.
+std::string nameOfSlice(MatrixAxis what, const volume::DatasetInfo& info, const SliceMatrixView& view,
+                        const MatrixSlice& slice, const PlanePicture& picture) {
+    const bool crossed = view.over(MatrixAxis::Directions) && view.over(MatrixAxis::Positions);
     switch (what) {
     case MatrixAxis::Parameters:
         return titleWithUnit(info.channel(slice.channel).name, info.channel(slice.channel).unit);
     case MatrixAxis::Directions:
+        return crossed ? "across " + picture.positions[static_cast<std::size_t>(slice.axis)].name : picture.place;
     case MatrixAxis::Positions:
-        return picture.place;
+        return crossed ? "at " + formatNumber(100 * (slice.plane.value_or(0) + 0.5) / view.planes, 1) + " %"
+                       : picture.place;
     case MatrixAxis::Times:
         return timeText(info, slice.time.value_or(0));
     }
@@ -118,10 +122,12 @@ SliceMatrix sliceMatrix(const Session& session, const volume::DatasetInfo& info,
         out.columns = static_cast<int>(slices.size());
         for (const MatrixSlice& slice : slices) {
             out.pictures.push_back(pictureOfSlice(session, info, view, slice));
-            if (first == 0) out.columnNames.push_back(nameOfSlice(view.columns, info, slice, out.pictures.back()));
+            if (first == 0)
+                out.columnNames.push_back(nameOfSlice(view.columns, info, view, slice, out.pictures.back()));
         }
         if (slices.empty()) continue;
-        out.rowNames.push_back(view.rows == view.columns ? "" : nameOfSlice(view.rows, info, row, out.pictures[first]));
+        out.rowNames.push_back(
+            view.rows == view.columns ? "" : nameOfSlice(view.rows, info, view, row, out.pictures[first]));
     }
     return out;
 }

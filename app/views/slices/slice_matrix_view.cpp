@@ -41,6 +41,7 @@ struct MatrixLayout {
     float legend = 0;        ///< width of upright legends, 0 = none
     ImVec2 cell;             ///< room of a cell
     std::vector<float> left; ///< of each column, and the end of the last
+    std::vector<float> high; ///< of the highest picture of each row
 };
 
 /// `text` as far as there is room, else the same without its unit, else its number alone.
@@ -165,6 +166,11 @@ MatrixLayout layOutMatrix(const ViewContext& context, const SliceMatrixView& vie
         x += std::min(out.cell.x, wide) + out.gap;
     }
     out.left.push_back(x);
+    for (int row = 0; row < matrix.rows; ++row) {
+        float& most = out.high.emplace_back(0.0f);
+        for (int column = 0; column < matrix.columns; ++column)
+            most = std::max(most, cellFrame(matrix.at(row, column), world, info.bounds, out.cell).plot.max.y);
+    }
     return out;
 }
 
@@ -183,7 +189,8 @@ void drawMatrixNames(const MatrixLayout& layout, const SliceMatrix& matrix) {
         const float y = layout.origin.y + layout.head + (layout.cell.y + layout.gap) * static_cast<float>(row);
         const std::string text =
             nameThatFits(matrix.rowNames[static_cast<std::size_t>(row)], layout.cell.y + layout.gap);
-        addTextUpwards(draw, {layout.origin.x + em() * 0.6f, y + layout.cell.y / 2}, plotColors().text, text.c_str());
+        addTextUpwards(draw, {layout.origin.x + em() * 0.6f, y + layout.high[static_cast<std::size_t>(row)] / 2},
+                       plotColors().text, text.c_str());
     }
 }
 
@@ -212,7 +219,7 @@ void drawMatrixLegends(const ViewContext& context, const SliceMatrixView& view, 
             draw,
             {layout.origin.x + layout.left.back(),
              std::round(layout.origin.y + layout.head + (layout.cell.y + layout.gap) * static_cast<float>(row))},
-            layout.cell.y, legend(row, 0));
+            layout.high[static_cast<std::size_t>(row)], legend(row, 0));
 }
 
 void drawMatrixCell(ViewContext& context, PlaneState& state, const PlanePicture& slice, const PlaneFrame& frame,
