@@ -19,7 +19,7 @@ namespace {
 
 /// Room of the colour bar at the lower end of a box, 0 where that is too low.
 float barRoom(const PictureBox& inner) {
-    const float height = legendBarHeight();
+    const float height = legendBarHeight() + em() * 0.5f;
     return inner.size.y > height * 3.2f && inner.size.x > em() * 7 ? height : 0;
 }
 

@@ -121,6 +121,7 @@ std::optional<CalloutPlace> planePlace(const Session& session, const volume::Dat
     glm::dvec3 middle(0);
     for (const glm::dvec3& corner : corners) middle += world.sheetToWorld(corner) / double(corners.size());
     place.center = middle;
+    place.half = world.halfSize;
     return place;
 }
 
@@ -149,7 +150,7 @@ vis::Camera calloutCamera(const vis::Camera& view, const Callout& callout, const
     camera.orientation = glm::normalize(callout.turn * view.orientation);
     camera.target = place.normal ? glm::vec3(0) : glm::vec3(place.center);
     camera.aperture = 0;
-    const double radius = kMargin * (place.normal ? std::sqrt(0.75) : std::max(place.radius(), 1e-4));
+    const double radius = kMargin * std::max(place.radius(), 1e-4);
     const double upwards = std::tan(glm::radians(double(view.fieldOfView)) / 2) * std::min(1.0, aspect);
     const double distance =
         view.projection == vis::Projection::Perspective ? radius / std::sin(std::atan(upwards)) : radius / upwards;

@@ -11,11 +11,11 @@ namespace tessera::app {
 
 /// What a callout shows: a body, or a plane.
 struct CalloutPlace {
-    std::string name;                           ///< of the lens, the brush, or of the plane
-    glm::vec3 color{1};                         ///< of its outline, sRGB; of planes white
-    glm::dvec3 center{0};                       ///< world; of a plane the middle of its part in the box
-    glm::dvec3 half{0};                         ///< of a body: half the edges of the box around it, world
-    bool ball = false;                          ///< it is one of radius half.x
+    std::string name;     ///< of the lens, the brush, or of the plane
+    glm::vec3 color{1};   ///< of its outline, sRGB; of planes white
+    glm::dvec3 center{0}; ///< world; of a plane the middle of its part in the box
+    glm::dvec3 half{0};   ///< half the edges of the box around a body, of that of the data for a plane; world
+    bool ball = false;    ///< it is one of radius half.x
     std::optional<vis::Lens> shape = {};        ///< cuts to a body that is neither a ball nor a box along the axes
     std::optional<glm::dvec3> normal = {};      ///< of a plane, on the sheet of the axes
     std::optional<volume::SpaceAxis> axis = {}; ///< across which a plane lies

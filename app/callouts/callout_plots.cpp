@@ -73,8 +73,8 @@ std::optional<vis::Region> samplesOfPlace(const CalloutPlace& place, const volum
     const double spacing = std::abs(info.lattice.spacing[axis]);
     if (info.lattice.axes[axis] || !(spacing > 0)) return std::nullopt;
     vis::BoxRegion layer{.center = info.bounds.center(), .radius = info.bounds.size()};
-    const double lo = info.bounds.lo[axis];
-    layer.center[axis] = lo + std::round((cursor[axis] - lo) / spacing) * spacing;
+    const double first = info.lattice.origin[axis], last = double(std::max(info.lattice.size[axis] - 1, 0));
+    layer.center[axis] = first + std::clamp(std::round((cursor[axis] - first) / spacing), 0.0, last) * spacing;
     layer.radius[axis] = spacing / 4;
     return layer;
 }
@@ -174,12 +174,21 @@ void drawCalloutNumbers(ViewContext& context, const CalloutPart& shown) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const PlotColors colors = plotColors();
     const PictureBox& box = shown.inner;
+    const auto rangeOf = [&](std::size_t i) {
+        const volume::Summary& inside = result->statistics.channels[i].inside;
+        const Range range = info.channelRange(info.channel(channels[i]));
+        const double digits = (range.hi - range.lo) / 1000;
+        return inside.samples > 0 ? formatNumber(inside.min, digits) + " .. " + formatNumber(inside.max, digits) : "";
+    };
     const float line = em() * 1.25f, left = box.min.x + em() * 0.5f, right = box.max().x - em() * 0.5f;
     const auto atRight = [&](float x, float y, ImU32 color, const std::string& text) {
         draw.AddText({std::round(x - ImGui::CalcTextSize(text.c_str()).x), y}, color, text.c_str());
     };
     const bool wide = box.size.x > em() * 17; // room for the range beside the mean
-    const float middle = wide ? right - em() * 8 : right;
+    float ranges = 0;
+    for (std::size_t i = 0; wide && i < channels.size() && i < result->statistics.channels.size(); ++i)
+        ranges = std::max(ranges, ImGui::CalcTextSize(rangeOf(i).c_str()).x);
+    const float middle = wide ? right - ranges - em() : right;
     float y = box.min.y + em() * 0.2f;
     atRight(middle, y, colors.faint, result->statistics.level > 0 ? "mean, estimated" : "mean");
     if (wide) atRight(right, y, colors.faint, "range");
@@ -196,9 +205,7 @@ void drawCalloutNumbers(ViewContext& context, const CalloutPart& shown) {
         const double digits = (range.hi - range.lo) / 1000;
         const std::string mean = inside.samples > 0 ? formatNumber(inside.mean, digits) : "-";
         atRight(middle, y, colors.text, mean);
-        if (wide && inside.samples > 0)
-            atRight(right, y, colors.faint,
-                    formatNumber(inside.min, digits) + " .. " + formatNumber(inside.max, digits));
+        if (wide) atRight(right, y, colors.faint, rangeOf(i));
         addFittedText(draw, {left, y}, colors.text, titleWithUnit(own.name, own.unit),
                       middle - left - ImGui::CalcTextSize(mean.c_str()).x - em() * 0.5f);
     }

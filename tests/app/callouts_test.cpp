@@ -195,22 +195,24 @@ TEST(CalloutScene, FillsItsPictureAndTurnsWithTheView) {
 }
 
 TEST(CalloutNumbers, AreOfTheLayerNearestToAPlane) {
-    const volume::DatasetInfo& info = cellInfo();
+    volume::DatasetInfo info = cellInfo();
+    info.lattice.size = {2, 5, 4}; // samples in the middle of cells: the first is not at the face of the box
+    info.lattice.spacing = {0.5, 0.4, 25};
+    info.lattice.origin = {0.25, 0.2, 12.5};
     Session session = defaultSession(info, {});
-    session.cursor = info.bounds.lo + 0.37 * info.bounds.size();
-    const auto place = calloutPlace(session, info, {.of = CalloutOf::Plane, .placeholder = "y"});
-    ASSERT_TRUE(place.has_value());
-    const auto region = samplesOfPlace(*place, info, session.cursor);
-    ASSERT_TRUE(region.has_value());
-    const auto& layer = std::get<vis::BoxRegion>(*region);
-    const double spacing = info.lattice.spacing.y;
-    int inside = 0;
-    for (double y = info.bounds.lo.y; y < info.bounds.hi.y + spacing / 2; y += spacing)
-        if (std::abs(y - layer.center.y) <= layer.radius.y) {
-            ++inside;
-            EXPECT_LE(std::abs(y - session.cursor.y), spacing / 2 * 1.0001);
-        }
-    EXPECT_EQ(inside, 1);
+    for (const auto& [cursor, nearest] : {std::pair{0.74, 0.6}, {0.0, 0.2}, {1.3, 1.4}, {2.0, 1.8}}) {
+        session.cursor = {0.5, cursor, 50};
+        const auto place = calloutPlace(session, info, {.of = CalloutOf::Plane, .placeholder = "y"});
+        ASSERT_TRUE(place.has_value());
+        const auto region = samplesOfPlace(*place, info, session.cursor);
+        ASSERT_TRUE(region.has_value());
+        const auto& layer = std::get<vis::BoxRegion>(*region);
+        std::vector<double> inside;
+        for (int k = 0; k < 5; ++k)
+            if (const double y = 0.2 + 0.4 * k; std::abs(y - layer.center.y) <= layer.radius.y) inside.push_back(y);
+        ASSERT_EQ(inside.size(), 1u);
+        EXPECT_NEAR(inside[0], nearest, 1e-9);
+    }
     session.views["oblique"] = ObliqueView{};
     const auto tilted = calloutPlace(session, info, {.of = CalloutOf::Plane, .placeholder = "oblique"});
     ASSERT_TRUE(tilted.has_value());

@@ -203,15 +203,26 @@ void CalloutsBeside::sayHidden(ImDrawList& draw) const {
     if (hidden == 0) return;
     const std::string text =
         std::to_string(hidden) + (hidden == 1 ? " callout has" : " callouts have") + " no room here";
-    addFittedWithBackdrop(draw, {picture_.min.x + picture_.size.x / 2, picture_.max().y - em() * 0.5f}, {0.5f, 1},
-                          plotColors().faint, text, picture_.size.x - em());
+    const float half = std::min(picture_.size.x - em(), ImGui::CalcTextSize(text.c_str()).x) / 2;
+    const float middle = picture_.min.x + picture_.size.x / 2;
+    float bottom = picture_.max().y - em() * 0.5f; // above the legends and what else stands there
+    for (const CalloutBox& other : cache_.taken)
+        if (other.min.x < middle + half && other.max.x > middle - half &&
+            other.max.y > picture_.min.y + picture_.size.y / 2)
+            bottom = std::min(bottom, other.min.y - em() * 0.2f);
+    addFittedWithBackdrop(draw, {middle, bottom}, {0.5f, 1}, plotColors().faint, text, picture_.size.x - em());
 }
 
-void CalloutsBeside::draw(const SpaceFrame& space, const vis::Scene& view, bool moving, Rectangles& taken) {
+void CalloutsBeside::reserve(const SpaceFrame& space, bool moving, Rectangles& taken) {
     if (context_.session.callouts.empty()) return;
     cache_.taken.clear();
     for (const auto& [lo, hi] : taken) cache_.taken.push_back({{lo.x, lo.y}, {hi.x, hi.y}});
     place(space, moving);
+    for (std::size_t i = 0; i < layout_.boxes.size(); ++i) taken.push_back({boxOf(i).min, boxOf(i).max()});
+}
+
+void CalloutsBeside::draw(const SpaceFrame& space, const vis::Scene& view, bool moving) {
+    if (context_.session.callouts.empty()) return;
     ImDrawList& list = *ImGui::GetWindowDrawList();
     for (std::size_t i = 0; i < layout_.boxes.size(); ++i) {
         const auto same = [&](const Shown& other) { return other.place == shown_[i].place; };
@@ -223,7 +234,6 @@ void CalloutsBeside::draw(const SpaceFrame& space, const vis::Scene& view, bool 
         for (std::size_t i = 0; i < layout_.boxes.size(); ++i) {
             if ((int(shown_[i].index) == cache_.held) != held) continue;
             drawBox(list, i, view, moving);
-            taken.push_back({boxOf(i).min, boxOf(i).max()});
         }
     sayHidden(list);
 }

@@ -29,8 +29,10 @@ public:
     /// True while something moves.
     bool take(const SpaceFrame& space, bool free);
 
-    /// Draws them over the picture of a scene. `taken`: what is drawn already; the boxes are added.
-    void draw(const SpaceFrame& space, const vis::Scene& view, bool moving, Rectangles& taken);
+    /// Finds their places beside what is `taken`, to which the boxes are added.
+    void reserve(const SpaceFrame& space, bool moving, Rectangles& taken);
+    /// Draws them there, over the picture of a scene and its axes.
+    void draw(const SpaceFrame& space, const vis::Scene& view, bool moving);
 
 private:
     struct Shown {

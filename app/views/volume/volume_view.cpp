@@ -113,8 +113,9 @@ private:
         if (shown_.title) drawTexts();
         drawCentred(equalText(session_, info_));
         if (!status.complete && !context_.headless && !moving) drawProgress(status);
-        callouts_.draw(space, *scene_, moving, taken_);
+        callouts_.reserve(space, moving, taken_);
         if (view_.showAxes && shown_.axes) drawAxes3d(*list_, space, camera, labels, taken_);
+        callouts_.draw(space, *scene_, moving);
         list_->PopClipRect();
     }
 
