@@ -77,8 +77,10 @@ done
 # Strokes in slices
 base strokes lic --set "$cell"
 picture_of strokes strokes-colors
-picture_of strokes strokes-grey --set /layers/0/technique/strokes/grey=true --set /layers/1/technique/strokes/grey=true
-picture_of strokes strokes-speed --set /layers/0/technique/strokes/bySpeed=true --set /layers/1/technique/strokes/bySpeed=true
+for look in grey bySpeed; do
+    picture_of strokes "strokes-${look,,}" --set "/layers/0/technique/strokes/$look=true" \
+        --set "/layers/1/technique/strokes/$look=true" --set "/layers/2/technique/strokes/$look=true"
+done
 # Drawings of four things in four styles, for print
 drawings() { # drawings BASE NAME LAYERS ARGUMENTS...: LAYERS contain LOOK in place of their look
     local from=$1 name=$2 layers=$3

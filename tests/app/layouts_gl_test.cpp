@@ -106,7 +106,7 @@ const std::vector<Shipped>& shipped() {
          "data history layers scatterMatrix slices statistics timeline transfer volume",
          "T [K] 353.17 .. 356.60; O2 [mol/m³] 0.02 .. 6.22; O2 [mol/m³] = 2.2; |U| [m/s] 0.00 .. 2.83",
          {{"volume", Cold, 0.0303}, {"volume", Warm, 0.0799}, {"scatterMatrix", Orange, 0}}},
-        {"lic", "data layers slices timeline transfer volume", "O2 [mol/m³] 0.02 .. 6.22; T [K] 353.17 .. 356.60", {}},
+        {"lic", "data layers slices timeline transfer volume", "T [K] 353.17 .. 356.60; O2 [mol/m³] 0.02 .. 6.22", {}},
         {"overTime",
          "data layers profile profile-2 slices timeline transfer volume",
          "H2 [mol/m³] 24.48 .. 33.11",

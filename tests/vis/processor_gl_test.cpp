@@ -224,7 +224,7 @@ TEST_F(WithoutOpenGl, CloudsOfPointsLookAsWithIt) {
              .color = {0.9f, 0.002f * float(i), 0.2f, 0.6f}});
     }
     CloudView view;
-    view.rotation = planeRotation(Plane4::XW, 0.4) * planeRotation(Plane4::YZ, 0.7);
+    view.rotation = planeRotation(0, 3, 0.4) * planeRotation(1, 2, 0.7);
     view.size = {150, 110};
     view.background = {0.1f, 0.2f, 0.3f};
     for (const double share : {1.0, 0.3})
