@@ -119,7 +119,7 @@ particles() { # particles NAME CHANNEL FROM TO CHANNEL FROM TO MORE: flow of bot
 particles particles-streaklines O2 '[0.25,0.6,0.02]' '[0.75,0.98,0.02]' H2 '[0.25,0.02,0.98]' '[0.75,0.4,0.98]' \
     '"kind":"streaklines","seeds":"plane","count":12,"radius":0.006'
 particles particles-arrows O2 '[0,0.5,0]' '[1,1,1]' H2 '[0,0,0]' '[1,0.5,1]' \
-    '"kind":"bentArrows","seeds":"even","separation":0.14,"count":12,"length":0.35,"radius":0.013'
+    '"kind":"bentArrows","seeds":"even","separation":0.12,"count":7,"length":0.15,"radius":0.012,"minimumSpeed":0.04'
 # Classification
 for kind in post pre preintegrated; do
     signal "classification-$kind" --set "/layers=[$(volume rho "\"classification\":\"$kind\",\"shaded\":false")]" \

@@ -125,8 +125,25 @@ void showWhatVaries(Session& session, const volume::BrickSource& source, std::ve
     }
 }
 
+namespace {
+
+/// Whether a layer is made of particles that were released before the time shown.
+bool looksBack(const vis::Layer& layer) {
+    const auto* const flow = std::get_if<vis::FlowLayer>(&layer.technique);
+    return layer.visible && flow && vis::followsParticles(flow->kind) && flow->kind != vis::FlowKind::Pathlines &&
+           !(flow->kind == vis::FlowKind::Timelines && flow->together);
+}
+
+} // namespace
+
 void showLastIfEmpty(Session& session, const volume::BrickSource& source, std::vector<std::string>& messages) {
     const volume::DatasetInfo& info = source.info();
+    const auto particles = std::ranges::find_if(session.layers, looksBack);
+    if (info.times.size() > 1 && session.time <= info.times.front() && particles != session.layers.end()) {
+        session.time = info.times.back();
+        messages.push_back(layerName(*particles) + ": its particles begin at the first time, so the last one is shown");
+        return;
+    }
     const auto first = std::ranges::find_if(session.layers, [](const vis::Layer& layer) {
         return layer.visible && layer.lens.empty() && std::holds_alternative<vis::VolumeLayer>(layer.technique);
     });

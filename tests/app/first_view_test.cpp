@@ -293,6 +293,33 @@ TEST(FirstView, ALayoutThatShowsNothingAtTheFirstTimeShowsTheLast) {
         }
 }
 
+// Smoke that has been released until the first time is nowhere yet.
+TEST(FirstView, ALayoutOfParticlesShowsTheLastTime) {
+    using enum vis::FlowKind;
+    const auto source = laterOn(true);
+    const double first = source->info().times.front(), last = source->info().times.back();
+    ASSERT_LT(first, last);
+    const auto timeFor = [&](vis::FlowKind kind, bool together, double asked, bool visible = true) {
+        Session session = defaultSession(source->info(), {});
+        session.time = asked;
+        vis::FlowLayer flow{.vector = "same", .channel = "|same|"};
+        flow.kind = kind;
+        flow.together = together;
+        session.layers = {{"flow", visible, flow}};
+        std::vector<std::string> messages;
+        showLastIfEmpty(session, *source, messages);
+        EXPECT_EQ(messages.size(), session.time == asked ? 0u : 1u);
+        return session.time;
+    };
+    for (const vis::FlowKind kind : {Streaklines, Timelines, Speedlines}) {
+        EXPECT_EQ(timeFor(kind, false, first), last) << int(kind);
+        EXPECT_EQ(timeFor(kind, false, 0.5 * (first + last)), 0.5 * (first + last)) << "of the layout";
+        EXPECT_EQ(timeFor(kind, false, first, false), first) << "hidden";
+    }
+    EXPECT_EQ(timeFor(Timelines, true, first), first) << "drawn where they are later";
+    for (const vis::FlowKind kind : {Tubes, Pathlines}) EXPECT_EQ(timeFor(kind, false, first), first) << int(kind);
+}
+
 TEST(FirstView, ALayerThatIsNewOrShowsAnotherParameterSuitsIt) {
     const auto source = bodies();
     const int air = *source->info().findChannel("air");

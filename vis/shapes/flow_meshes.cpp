@@ -181,7 +181,8 @@ volume::SurfaceMesh bentArrows(const LineSet& lines, double radius, bool flat, g
     for (const std::uint32_t end : lines.ends) {
         const LineCourse course = simplified(courseOf(lines, begin, end, radius * 0.05, stretch), radius * 0.05, step);
         begin = end;
-        if (course.places.size() > 1 && lengthOf(course) > 2 * radius) addBentArrow(rings, course, radius);
+        if (course.places.size() > 1 && lengthOf(course) > 1.3 * kHeadLong * radius)
+            addBentArrow(rings, course, radius);
     }
     return std::move(rings.mesh);
 }

@@ -49,13 +49,13 @@ std::vector<glm::dvec3> halfLine(const ChangingField& field, glm::dvec3 place, g
 
 /// The samples around a place in a CC lattice and their weights, which are those of all components and times: the
 /// interpolation of valueAt() where no sample is of a part.
-struct Around {
+struct CellCorners {
     std::size_t near = 0, indices[8] = {};
     double weights[8] = {};
     int count = 0;
     bool even = true;
 
-    Around(const Lattice& lattice, glm::dvec3 position) : even(lattice.isEven()) {
+    CellCorners(const Lattice& lattice, glm::dvec3 position) : even(lattice.isEven()) {
         near = lattice.index(lattice.nearest(position));
         const glm::dvec3 cells = lattice.between(position), base = glm::floor(cells), f = cells - base;
         const glm::ivec3 first(base), last = lattice.size - 1;
@@ -89,7 +89,7 @@ bool contains(const Box& box, glm::dvec3 place) {
     return !glm::any(glm::lessThan(place, box.lo)) && !glm::any(glm::greaterThan(place, box.hi));
 }
 
-/// Whether Around does for this grid.
+/// Whether CellCorners does for this grid.
 bool isPlain(const VectorGrid& grid) {
     return grid.x.lattice.kind == LatticeKind::CC && grid.x.parts.empty() && grid.y.parts.empty() &&
            grid.z.parts.empty();
@@ -119,7 +119,7 @@ std::optional<double> valueAt(const SampleGrid& grid, glm::dvec3 position) {
 
 std::optional<glm::dvec3> VectorGrid::at(glm::dvec3 position) const {
     if (!contains(bounds, position)) return std::nullopt;
-    if (isPlain(*this)) return Around(x.lattice, position).vectorOf(*this);
+    if (isPlain(*this)) return CellCorners(x.lattice, position).vectorOf(*this);
     const auto a = valueAt(x, position);
     const auto b = a ? valueAt(y, position) : std::nullopt;
     const auto c = b ? valueAt(z, position) : std::nullopt;
@@ -166,9 +166,9 @@ std::optional<glm::dvec3> VectorSeries::at(glm::dvec3 position, double time) con
     if (!contains(later.bounds, position)) return std::nullopt;
     std::optional<glm::dvec3> a, b;
     if (isPlain(later) && isPlain(earlier)) {
-        const Around around(later.x.lattice, position);
-        b = around.vectorOf(later);
-        if (b) a = around.vectorOf(earlier);
+        const CellCorners corners(later.x.lattice, position);
+        b = corners.vectorOf(later);
+        if (b) a = corners.vectorOf(earlier);
     } else {
         b = later.at(position);
         if (b) a = earlier.at(position);
