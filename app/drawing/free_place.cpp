@@ -3,6 +3,7 @@
 #include "app/drawing/line_pieces.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace tessera::app {
 
@@ -16,9 +17,25 @@ bool overlap(const PageBox& a, const PageBox& b) {
     return a.lo.x < b.hi.x && b.lo.x < a.hi.x && a.lo.y < b.hi.y && b.lo.y < a.hi.y;
 }
 
+/// Whether a place lies within points, by the number of edges to the right of it.
+bool holds(const std::vector<glm::dvec2>& points, glm::dvec2 place) {
+    bool inside = false;
+    for (std::size_t i = 0, j = points.size() - 1; i < points.size(); j = i++) {
+        const glm::dvec2 a = points[i], b = points[j];
+        if ((a.y > place.y) != (b.y > place.y) && place.x < a.x + (b.x - a.x) * (place.y - a.y) / (b.y - a.y))
+            inside = !inside;
+    }
+    return inside;
+}
+
 bool covers(const PageBox& box, const Mark& mark) {
-    if (const auto* stroke = std::get_if<Stroke>(&mark.shape))
-        return !piecesWithin(stroke->points, {box.lo, {box.hi.x, box.lo.y}, box.hi, {box.lo.x, box.hi.y}}).empty();
+    const std::vector<glm::dvec2> corners{box.lo, {box.hi.x, box.lo.y}, box.hi, {box.lo.x, box.hi.y}};
+    if (const auto* stroke = std::get_if<Stroke>(&mark.shape)) return !piecesWithin(stroke->points, corners).empty();
+    if (const auto* polygon = std::get_if<Polygon>(&mark.shape); polygon && !polygon->points.empty()) {
+        std::vector<glm::dvec2> edge = polygon->points;
+        edge.push_back(edge.front());
+        return holds(polygon->points, box.lo) || !piecesWithin(edge, corners).empty();
+    }
     if (const auto* rect = std::get_if<Rect>(&mark.shape)) return overlap(box, rect->box);
     if (const auto* circle = std::get_if<Circle>(&mark.shape))
         return overlap(box, {circle->center - circle->radius, circle->center + circle->radius});

@@ -62,7 +62,10 @@ PieceLanes pieceLanes(const volume::PieceGraph& graph) {
         int lane = 0;
         for (std::size_t j = 0; j < i; ++j) {
             const TrackSpan& other = spans[std::size_t(order[j])];
-            if (other.last + 1 >= own.first && own.last + 1 >= other.first)
+            // What goes over into each other may do so on one lane; what has nothing to do with it stays apart.
+            const int apart =
+                std::ranges::count(own.before, order[j]) + std::ranges::count(own.after, order[j]) > 0 ? 0 : 1;
+            if (other.last + apart >= own.first && own.last + apart >= other.first)
                 lane = std::max(lane, lanes.lane[std::size_t(order[j])] + 1);
         }
         lanes.lane[std::size_t(order[i])] = lane;

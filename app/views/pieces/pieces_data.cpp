@@ -92,14 +92,36 @@ double quarterStep(const std::vector<double>& times, int time) {
     return std::min(before, after) / 4;
 }
 
+/// An end of a line between two pieces: where, and half its width there.
+struct FlowEnd {
+    glm::dvec2 at{0};
+    double half = 0;
+};
+
 /// From one lane to another without a corner.
-void addCurve(PlotFlow& flow, glm::dvec2 from, glm::dvec2 to, double half) {
-    constexpr int kParts = 12;
+void addCurve(PlotFlow& flow, const FlowEnd& from, const FlowEnd& to) {
+    constexpr int kParts = 16;
     for (int i = 0; i <= kParts; ++i) {
         const double s = double(i) / kParts, eased = s * s * (3 - 2 * s);
-        flow.points.emplace_back(glm::mix(from.x, to.x, s), glm::mix(from.y, to.y, eased));
-        flow.half.push_back(half);
+        flow.points.emplace_back(glm::mix(from.at.x, to.at.x, s), glm::mix(from.at.y, to.at.y, eased));
+        flow.half.push_back(glm::mix(from.half, to.half, eased));
     }
+}
+
+/// Where a line to `other` leaves a piece, beside those to the others of `mates`, of which `other` is one: each takes
+/// as much of the piece's width as its share of their volumes, in the order of their lanes.
+FlowEnd endAt(const PieceGraph& graph, const std::vector<glm::dvec2>& places, std::size_t piece, double half,
+              const std::vector<int>& mates, int other) {
+    double above = 0, all = 0;
+    for (const int mate : mates) {
+        const double volume = graph.pieces[std::size_t(mate)].volume;
+        const double y = places[std::size_t(mate)].y, own = places[std::size_t(other)].y;
+        all += volume;
+        if (y > own || (y == own && mate < other)) above += volume;
+    }
+    if (!(all > 0)) return {places[piece], half};
+    const double share = graph.pieces[std::size_t(other)].volume / all;
+    return {places[piece] + glm::dvec2(0, half * (1 - 2 * above / all - share)), half * share};
 }
 
 } // namespace
@@ -148,7 +170,7 @@ volume::PieceGraph readPieces(const volume::BrickSource& source, const PiecesQue
 std::string piecesName(const volume::DatasetInfo& info, const PiecesQuestion& question) {
     if (question.of == PiecesOf::Selected) return question.selection;
     return info.channel(question.channel).name + (question.of == PiecesOf::Above ? " of at least " : " of at most ") +
-           pieceValue(info, question.channel, question.value);
+           formatQuantity(question.value, info.channel(question.channel).unit);
 }
 
 std::string piecesNote(const volume::DatasetInfo& info, const PieceGraph& graph, const PiecesQuestion& question) {
@@ -262,27 +284,35 @@ Plot piecesPlot(const volume::DatasetInfo& info, const PieceGraph& graph, const 
     const glm::vec4 usual = look.dark ? glm::vec4(0.45f, 0.58f, 0.7f, 1) : glm::vec4(0.42f, 0.55f, 0.68f, 1),
                     chosen = glm::vec4(plotInk(0, look.dark), 1);
     const auto inkOf = [&](int track) { return track == look.chosen ? chosen : usual; };
+    std::vector<std::vector<int>> before(graph.pieces.size()), after(graph.pieces.size());
+    for (const volume::PieceLink& link : graph.links) {
+        before[std::size_t(link.to)].push_back(link.from);
+        after[std::size_t(link.from)].push_back(link.to);
+    }
     for (const volume::PieceLink& link : graph.links) {
         const Piece &from = graph.pieces[std::size_t(link.from)], &to = graph.pieces[std::size_t(link.to)];
-        const glm::dvec2 a = places[std::size_t(link.from)], b = places[std::size_t(link.to)];
+        if (from.track == to.track) continue;
+        const auto first = std::size_t(link.from), last = std::size_t(link.to);
         PlotFlow& flow = plot.flows.emplace_back();
         flow.color = inkOf(from.track);
-        if (from.track == to.track) {
-            flow.points = {a, b};
-            flow.half = {halfOf(from), halfOf(to)};
-        } else {
-            addCurve(flow, a, b, std::min(halfOf(from), halfOf(to)));
-        }
+        addCurve(flow, endAt(graph, places, first, halfOf(from), after[first], link.to),
+                 endAt(graph, places, last, halfOf(to), before[last], link.from));
     }
-    std::vector<int> uses(std::size_t(graph.tracks) + 1, 0);
-    for (const Piece& piece : graph.pieces) ++uses[std::size_t(piece.track)];
+    std::vector<PlotFlow> tracks(std::size_t(graph.tracks) + 1);
     for (std::size_t p = 0; p < places.size(); ++p) {
-        const Piece& piece = graph.pieces[p];
-        if (uses[std::size_t(piece.track)] > 1) continue;
-        const double reach = quarterStep(info.times, piece.time), half = halfOf(piece);
-        plot.flows.push_back(
-            {{places[p] - glm::dvec2(reach, 0), places[p] + glm::dvec2(reach, 0)}, {half, half}, inkOf(piece.track)});
+        PlotFlow& flow = tracks[std::size_t(graph.pieces[p].track)];
+        flow.color = inkOf(graph.pieces[p].track);
+        flow.points.push_back(places[p]);
+        flow.half.push_back(halfOf(graph.pieces[p]));
     }
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        PlotFlow& flow = tracks[std::size_t(graph.pieces[p].track)];
+        if (flow.points.size() != 1) continue;
+        const glm::dvec2 reach(quarterStep(info.times, graph.pieces[p].time), 0);
+        flow.points = {places[p] - reach, places[p] + reach};
+        flow.half.push_back(flow.half.front());
+    }
+    for (std::size_t t = 1; t < tracks.size(); ++t) plot.flows.push_back(std::move(tracks[t]));
     if (!look.events) return plot;
     static constexpr std::array<const char*, 6> kNames{"birth", "death", "merge", "split", "enters", "leaves"};
     for (std::size_t kind = 0; kind < kNames.size(); ++kind) {

@@ -196,7 +196,7 @@ void drawPiecesView(ViewContext& context, const std::string& pane, PiecesView& v
                                  const Progress&) { return piecesTable(data->info(), found->result, found->query); },
                     .brushed = asked.of == PiecesOf::Selected},
                    false);
-    drawNote(tools, piecesNote(info, graph, asked));
+    drawNote(tools, piecesNote(info, graph, asked) + "; widths by volume");
     if (graph.pieces.empty()) {
         const std::string none = graph.leftOutTracks > 0
                                      ? piecesNote(info, graph, asked) + "."
