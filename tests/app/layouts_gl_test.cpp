@@ -93,7 +93,7 @@ const std::vector<Shipped>& shipped() {
         {"hyperplane",
          "data layers profile slices timeline transfer volume volume-2",
          "H2 [mol/m³] 24.48 .. 33.11",
-         {}},
+         {{"volume", Warm, 0.0159}, {"slices", Warm, 0.0156}}},
         {"hyperslice",
          "data hyperSlice layers timeline transfer volume",
          "H2 [mol/m³] 24.48 .. 33.11",
