@@ -1,5 +1,6 @@
 #include "app/command/command.h"
 #include "tests/codec/make_dataset.h"
+#include "volume/import/import_options.h"
 
 #include <filesystem>
 #include <fstream>

@@ -475,7 +475,8 @@ TEST(Numbers, OneGridOfABodyCentredArchiveIsReadAsStored) {
     std::filesystem::create_directories(folder);
     const std::string path = folder + "/bcc.tsr";
     // An odd number of slices: the first grid has one more.
-    codec::pack(volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 24}}), packing(StoredLattice::BCC), path);
+    volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 24}});
+    codec::pack(cell, packing(StoredLattice::BCC), path);
     const codec::Archive archive(path);
     const volume::Lattice& both = archive.info().lattice;
     DataRef data = dataOf({path}, {});
@@ -518,7 +519,7 @@ TEST(Numbers, TheUncertaintyOfAnArchiveBoundsWhatPackingChanged) {
         (std::filesystem::temp_directory_path() / "tessera_uncertainty_").string() + std::to_string(::getpid());
     std::filesystem::create_directories(folder);
     const std::string path = folder + "/bounded.tsr";
-    const volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 24}});
+    volume::Dataset cell = volume::makeModel("fuel-cell", {{"nx", 9}, {"ny", 11}, {"nz", 24}});
     const auto computed = volume::makeMemorySource(cell, {.lattice = volume::LatticeKind::CC, .budget = 1 << 28});
     for (const StoredLattice lattice : {StoredLattice::CC, StoredLattice::BCC}) {
         codec::pack(cell, packing(lattice, 0.01), path);
