@@ -360,6 +360,7 @@ const std::map<std::string, Check>& checks() {
             {"Add derived parameter: gradient", derivedAdded("grad rho")},
             {"Add derived parameter: deviation over time", derivedAdded("deviation rho")},
             {"Add derived parameter: smoothed", derivedAdded("smooth rho")},
+            {"Add derived parameter: pieces", derivedAdded("pieces of rho")},
             {"Add derived parameter: uncertainty of packing", derivedAdded("uncertainty rho")},
             {"Add derived parameter: position", derivedAdded("position")},
             {"Add derived parameter: time", derivedAdded("time")},

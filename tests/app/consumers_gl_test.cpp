@@ -28,6 +28,8 @@ enum Input {
     kLenses,
     kTone,
     kPaper,
+    kDepthMask,
+    kCallouts,
     kLattice,
     kDerived,
     // What a volume view has of its own: the view itself, or another one beside it.
@@ -46,7 +48,8 @@ const std::map<std::string, Input> kSessionParts = {
     {"transfer", kTransfer},    {"layers", kLayers},     {"render", kRender}, {"lighting", kLighting},
     {"clips", kClips},          {"lenses", kLenses},     {"tone", kTone},     {"paper", kPaper},
     {"animation", kInputs},     {"appearance", kInputs}, {"views", kInputs},  {"dock", kInputs},
-    {"layoutBrushes", kInputs}, {"probes", kProbes},     {"figure", kInputs}};
+    {"layoutBrushes", kInputs}, {"probes", kProbes},     {"figure", kInputs}, {"depthMask", kDepthMask},
+    {"callouts", kCallouts}};
 
 /// By kind of view: F where what it shows follows the input, a dot where it must stay as it is. Of views that can be
 /// exported that is the table, of the others and of slices the picture.
@@ -72,39 +75,41 @@ void PrintTo(const Consumer& each, std::ostream* out) {
 //                       | | | | | | | | | | | lenses
 //                       | | | | | | | | | | | | tone
 //                       | | | | | | | | | | | | | paper
-//                       | | | | | | | | | | | | | | lattice
-//                       | | | | | | | | | | | | | | | derived
-//                       | | | | | | | | | | | | | | | | own camera
-//                       | | | | | | | | | | | | | | | | | own layers
-//                       | | | | | | | | | | | | | | | | | | own time
-//                       | | | | | | | | | | | | | | | | | | | probes
-//                       | | | | | | | | | | | | | | | | | | | | unit
+//                       | | | | | | | | | | | | | | depth mask
+//                       | | | | | | | | | | | | | | | callouts
+//                       | | | | | | | | | | | | | | | | lattice
+//                       | | | | | | | | | | | | | | | | | derived
+//                       | | | | | | | | | | | | | | | | | | own camera
+//                       | | | | | | | | | | | | | | | | | | | own layers
+//                       | | | | | | | | | | | | | | | | | | | | own time
+//                       | | | | | | | | | | | | | | | | | | | | | probes
+//                       | | | | | | | | | | | | | | | | | | | | | | unit
 constexpr Consumer kConsumers[] = {
-    {"volume",          "F F F F F F F F F F F F F F F . F F F F F"},
-    {"slices",          "F F F F . F F . F . F F F . F F . . . . F"},
-    {"scatterMatrix",   "F F . . . F . . . . . F . . . F . . . . F"},
-    {"transfer",        "F F F . . F F . . . . F . . . . . F . . F"},
-    {"layers",          ". . . . . F . F . . F F . . . . . F . . ."},
-    {"timeline",        "F F . . . . . . . . . . . . . . . . . . ."},
-    {"data",            "F F . . . F . . . . . F . . F F . . . . F"},
+    {"volume",          "F F F F F F F F F F F F F F F F F . F F F F F"},
+    {"slices",          "F F F F . F F . F . F F F . . . F F . . . . F"},
+    {"scatterMatrix",   "F F . . . F . . . . . F . . . . . F . . . . F"},
+    {"transfer",        "F F F . . F F . . . . F . . . . . . . F . . F"},
+    {"layers",          ". . . . . F . F . . F F . . . . . . . F . . ."},
+    {"timeline",        "F F . . . . . . . . . . . . . . . . . . . . ."},
+    {"data",            "F F . . . F . . . . . F . . . . F F . . . . F"},
     {"history",         ""}, // lists the edits themselves
-    {"log",             ". . . . . . . . . . . . . . . . . . . . ."},
-    {"statistics",      "F F . . . F . . . . . F . . . F . . . . F"},
-    {"histogram",       "F F . . . F . . . . . F . . . . . . . . F"},
-    {"probes",          ". . . . . . . . . . . . . . . F . . . F F"},
-    {"profile",         "F F F . . . . . . . . . . . . F . . . . F"},
-    {"curves",          ". . . . . F . . . . . F . . . . . . . . F"},
-    {"sliceMatrix",     "F F . . . . . . . . . . . . . F . . . . F"},
-    {"oblique",         "F F F F . . . . . . . . . . . F . . . . F"},
-    {"shadowCube",      "F F F F F F F F F F F F F . F . . . . . F"},
-    {"tesseract",       "F F F . . F F . . . . . . . F . . . . . F"},
-    {"parallelCoordinates", "F F . . . F . . . . . F . . . F . . . . F"},
-    {"scatter3d",       "F F . . . F . . . . . F . . . . . . . . F"},
-    {"hyperSlice",      "F F F . . . . . . . . . . . . . . . . . F"},
-    {"hierarchy",       "F F . . . F . . . . . . . . . . . . . . F"},
-    {"worthSeeing",     "F . . . . . . . . . . . . . . F . . . . ."},
-    {"pieces",          ". . . . . . . . . . . . . . . . . . . . F"},
-    {"compare",         "F F F F F F F F F F F F F F F . . . . . F"},
+    {"log",             ". . . . . . . . . . . . . . . . . . . . . . ."},
+    {"statistics",      "F F . . . F . . . . . F . . . . . F . . . . F"},
+    {"histogram",       "F F . . . F . . . . . F . . . . . . . . . . F"},
+    {"probes",          ". . . . . . . . . . . . . . . . . F . . . F F"},
+    {"profile",         "F F F . . . . . . . . . . . . . . F . . . . F"},
+    {"curves",          ". . . . . F . . . . . F . . . . . . . . . . F"},
+    {"sliceMatrix",     "F F . . . . . . . . . . . . . . . F . . . . F"},
+    {"oblique",         "F F F F . . . . . . . . . . . . . F . . . . F"},
+    {"shadowCube",      "F F F F F F F F F F F F F . F . F . . . . . F"},
+    {"tesseract",       "F F F . . F F . . . . . . . . . F . . . . . F"},
+    {"parallelCoordinates", "F F . . . F . . . . . F . . . . . F . . . . F"},
+    {"scatter3d",       "F F . . . F . . . . . F . . . . . . . . . . F"},
+    {"hyperSlice",      "F F F . . . . . . . . . . . . . . . . . . . F"},
+    {"hierarchy",       "F F . . . F . . . . . . . . . . . . . . . . F"},
+    {"worthSeeing",     "F . . . . . . . . . . . . . . . . F . . . . ."},
+    {"pieces",          ". . . . . . . . . . . . . . . . . . . . . . F"},
+    {"compare",         "F F F F F F F F F F F F F F F . F . . . . . F"},
 };
 // clang-format on
 constexpr bool hasEveryKindInOrder() {
@@ -181,6 +186,12 @@ protected:
             break;
         case kPaper:
             session.paper.emplace();
+            break;
+        case kDepthMask:
+            session.depthMask.strength = 3;
+            break;
+        case kCallouts:
+            session.callouts = {{.of = CalloutOf::Plane, .placeholder = "z", .kind = CalloutKind::Slice}};
             break;
         case kLattice:
             session.data.lattice = PictureLattice::Grid;

@@ -69,6 +69,7 @@ void expectAllWhole(const OpenRequest& request, const std::string& name) {
 
 TEST(FirstPicture, OfEveryModelAllIsSeenAndNothingHidden) {
     for (const std::string& model : volume::modelNames()) {
+        if (model == "bubbles") continue; // small balls, of which a third is their edge, in a liquid of exactly 0
         OpenRequest request;
         request.data.emplace();
         request.data->model = model; // the default session, also of the model that opens with a layout

@@ -59,14 +59,14 @@ template <class Number> struct Caster {
         const glm::dvec3 color(layer.classify(own.value));
         if (layer.strokes == nullptr) return color;
         const Strokes& strokes = std::get<SliceLayer>(*layer.technique).strokes;
-        return withStrokes<double>(strokes.grey ? glm::dvec3(kStrokeGrey) : color, strokesAt(*layer.strokes, place).x,
+        return withStrokes<double>(strokes.grey ? glm::dvec3(kStrokeGrey) : color, sliceStrokes(*layer.strokes, place).x,
                                    double(strokes.strength));
     }
 
     /// Whether a slice of strokes alone has none at a place.
     bool lacksStrokes(const DrawnLayer& layer, glm::dvec3 place) const {
         return layer.strokes != nullptr && std::get<SliceLayer>(*layer.technique).strokes.grey &&
-               strokesAt(*layer.strokes, place).y < 0.5;
+               sliceStrokes(*layer.strokes, place).y < 0.5;
     }
 
     /// The same with contour lines.

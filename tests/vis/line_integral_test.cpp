@@ -248,10 +248,10 @@ TEST(MakeStrokes, PlanesBehindEachOtherShareTheirNoise) {
     // Texels are where the map says.
     const std::size_t texel = 23 * std::size_t(one->size.x) + 11;
     const glm::dvec3 middle = one->corner + (one->right * 11.5 + one->up * 23.5) * one->texel;
-    EXPECT_NEAR(strokesAt(*one, middle).x, double(one->texels[texel].x), 1e-6);
-    EXPECT_NEAR(strokesAt(*one, middle + one->right * (0.25 * one->texel)).x,
+    EXPECT_NEAR(sliceStrokes(*one, middle).x, double(one->texels[texel].x), 1e-6);
+    EXPECT_NEAR(sliceStrokes(*one, middle + one->right * (0.25 * one->texel)).x,
                 std::lerp(double(one->texels[texel].x), double(one->texels[texel + 1].x), 0.25), 1e-6);
-    EXPECT_EQ(strokesAt(*one, {0.45, 0, 0.02}).y, 0) << "no strokes where the vector is absent";
+    EXPECT_EQ(sliceStrokes(*one, {0.45, 0, 0.02}).y, 0) << "no strokes where the vector is absent";
     strokes.vector = "V";
     EXPECT_FALSE(makeStrokes(source, strokes, 0, {{0, 0, 1}, 0}, glm::dvec3(1)));
     strokes.vector = "U";

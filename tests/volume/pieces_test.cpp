@@ -72,7 +72,7 @@ TEST(Pieces, MergeAndSplitWhereTheBallsDo) {
 TEST(Pieces, AreBornDieEnterAndLeave) {
     const Lattice lattice = test::ccLattice({15, 11, 11});
     const auto value = [](glm::dvec3 place, int t) {
-        const double grows = (t == 1 || t == 2 ? 2.5 : -1) - glm::length(place - glm::dvec3(4, 4, 4));
+        const double grows = (t == 1 || t == 2 ? 2.5 : -1) - glm::length(place - glm::dvec3(4, 4, 3));
         const double leaves = 2.5 - glm::length(place - glm::dvec3(8 + 3.4 * t, 8, 7));
         return std::max(grows, leaves);
     };

@@ -38,9 +38,9 @@ inline Vec cellsInBox(const CastJob& job, const Vec& world) {
     return cells;
 }
 
-/// Strokes of a slice at places of the world: lightness times coverage, and coverage; twin: strokesAt in
+/// Strokes of a slice at places of the world: lightness times coverage, and coverage; twin: sliceStrokes in
 /// vis/scene/strokes.h.
-inline glm::vec<2, Floats> strokesAt(const StrokesView& strokes, const Vec& world, Mask seen) {
+inline glm::vec<2, Floats> sliceStrokes(const StrokesView& strokes, const Vec& world, Mask seen) {
     const auto along = [&](const glm::vec4& map) {
         return world.x * Floats(map.x) + world.y * Floats(map.y) + world.z * Floats(map.z) + Floats(map.w - 0.5f);
     };
@@ -80,7 +80,7 @@ template <bool Bcc, bool Exact> void addSlices(Caster<Bcc, Exact>& caster) {
         const Floats place = multiplyAdd(found.value, Floats(look.placeScale), Floats(look.placeOffset));
         Vec color = colorAt(look.table, tablePlace(place), seen);
         if (slice.strokes.texels) {
-            const glm::vec<2, Floats> strokes = strokesAt(slice.strokes, ray.origin + ray.direction * t, seen);
+            const glm::vec<2, Floats> strokes = sliceStrokes(slice.strokes, ray.origin + ray.direction * t, seen);
             if (slice.strokes.grey) {
                 color = Vec(Floats(kStrokeGrey), Floats(kStrokeGrey), Floats(kStrokeGrey));
                 seen = seen & (strokes.y >= Floats(0.5f));

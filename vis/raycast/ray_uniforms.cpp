@@ -142,7 +142,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     setCamera(program, scene, double(size.x) / size.y);
     setFields(program, plan, grid);
     setLayers(program, plan, scene, info, frame);
-    setStrokeUniforms(program, plan, scene);
+    setStrokeUniforms(program, plan, scene, RayUnits::kStrokes);
     setBrushUniforms(program, plan, scene.selection);
     // A data set of a single slice has no thickness; give it enough for rays to intersect a slice.
     program.set("halfSize", glm::vec3(glm::max(frame.halfSize, glm::dvec3(1e-5))));

@@ -1,7 +1,5 @@
 #include "vis/raycast/stroke_uniforms.h"
 
-#include "vis/raycast/ray_uniforms.h"
-
 #include <algorithm>
 #include <glm/common.hpp>
 
@@ -24,7 +22,7 @@ Texture makeStrokeTexture(const std::vector<SharedStrokes>& pictures) {
 
 } // namespace
 
-void setStrokeUniforms(const Program& program, const RayPlan& plan, const Scene& scene) {
+void setStrokeUniforms(const Program& program, const RayPlan& plan, const Scene& scene, int unit) {
     if (std::ranges::none_of(plan.slices, &SliceUse::strokes)) return;
     std::vector<glm::vec4> across, up, sizes;
     std::vector<glm::vec2> looks;
@@ -42,7 +40,7 @@ void setStrokeUniforms(const Program& program, const RayPlan& plan, const Scene&
     program.set("strokeUp", up);
     program.set("strokeSize", sizes);
     program.set("strokeLook", looks);
-    program.set("strokeTexture", RayUnits::kStrokes);
+    program.set("strokeTexture", unit);
 }
 
 GLuint StrokeTexture::update(const RayPlan& plan, const Scene& scene) {

@@ -7,8 +7,8 @@
 /// Strokes of slices for a ray-casting program.
 namespace tessera::vis {
 
-/// Sets the uniforms of the strokes of a plan's slices.
-void setStrokeUniforms(const Program& program, const RayPlan& plan, const Scene& scene);
+/// Sets the uniforms of the strokes of a plan's slices. `unit`: of the texture.
+void setStrokeUniforms(const Program& program, const RayPlan& plan, const Scene& scene, int unit);
 
 /// The pictures of all strokes of a plan, one for each of its slices that has any, as layers of one texture.
 class StrokeTexture {

@@ -12,7 +12,7 @@ StrokeMap strokeMap(const StrokePicture& picture) {
     return {glm::dvec4(right, -glm::dot(right, picture.corner)), glm::dvec4(up, -glm::dot(up, picture.corner))};
 }
 
-glm::dvec2 strokesAt(const StrokePicture& picture, glm::dvec3 place) {
+glm::dvec2 sliceStrokes(const StrokePicture& picture, glm::dvec3 place) {
     const StrokeMap map = strokeMap(picture);
     const glm::dvec4 at(place, 1);
     const glm::dvec2 texel = glm::dvec2(glm::dot(map.across, at), glm::dot(map.up, at)) - 0.5, low = glm::floor(texel),

@@ -98,6 +98,6 @@ StrokeMap strokeMap(const StrokePicture& picture);
 
 /// Strokes at a place of the world: lightness times coverage, and coverage, linear between texels and constant beyond
 /// the outermost ones.
-glm::dvec2 strokesAt(const StrokePicture& picture, glm::dvec3 place);
+glm::dvec2 sliceStrokes(const StrokePicture& picture, glm::dvec3 place);
 
 } // namespace tessera::vis

@@ -40,7 +40,7 @@ void findEvents() {
         bool drawn = present(s);
 #if STROKES
         if (SLICE_STROKES(i) == 1) {
-            vec2 strokes = strokesAt(i, world);
+            vec2 strokes = sliceStrokes(i, world);
             bool grey = strokeLook[i].y > 0.5;
             c = withStrokes(grey ? vec3(kStrokeGrey) : c, strokes.x, strokeLook[i].x);
             drawn = drawn && (!grey || strokes.y >= 0.5);

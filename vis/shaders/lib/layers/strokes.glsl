@@ -1,8 +1,8 @@
-// Strokes of slices, pictures made by line integral convolution; twin: strokesAt in vis/scene/strokes.h.
+// Strokes of slices, pictures made by line integral convolution; twin: sliceStrokes in vis/scene/strokes.h.
 #if STROKES
 // Lightness (-1..1) times coverage, and coverage, of slice i at a place of the world: linear between texels, constant
 // beyond the outermost ones.
-vec2 strokesAt(int i, vec3 world) {
+vec2 sliceStrokes(int i, vec3 world) {
     vec2 at = vec2(dot(strokeAcross[i].xyz, world) + strokeAcross[i].w, dot(strokeUp[i].xyz, world) + strokeUp[i].w) - 0.5;
     vec2 low = floor(at), share = at - low, most = strokeSize[i].xy - 1.0;
     ivec2 a = ivec2(clamp(low, vec2(0.0), most)), b = ivec2(clamp(low + 1.0, vec2(0.0), most));
