@@ -88,7 +88,7 @@ bool handleMouse(ViewContext& context, CameraController& hand, vis::ViewTarget* 
     const ImGuiIO& io = ImGui::GetIO();
     vis::Camera& camera = context.session.camera;
     const double aspect = picture.aspect();
-    const bool hovered = ImGui::IsItemHovered();
+    const bool over = ImGui::IsItemHovered(), hovered = over && !hand.covered;
     bool moving = false;
     if (hovered && hand.drag == CameraDrag::None && !hand.blocked) {
         hand.drag = dragOf(io);
@@ -149,7 +149,7 @@ bool handleMouse(ViewContext& context, CameraController& hand, vis::ViewTarget* 
         const glm::ivec2 pixel(io.MousePos.x - picture.min.x, io.MousePos.y - picture.min.y);
         if (const auto pick = context.renderer.pick(*target, pixel)) context.session.cursor = pick->position;
     }
-    handleKeys(camera, world, aspect, (hovered || ImGui::IsWindowFocused()) && !typing(),
+    handleKeys(camera, world, aspect, (over || ImGui::IsWindowFocused()) && !typing(),
                std::exchange(context.cameraKey, 0));
     return moving;
 }

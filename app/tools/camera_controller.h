@@ -15,6 +15,7 @@ struct CameraController {
     CameraDrag drag = CameraDrag::None;
     ImVec2 last{0, 0};    ///< mouse of the former frame
     bool blocked = false; ///< another object under the mouse takes it: no drag begins
+    bool covered = false; ///< something lies over the picture there, for which buttons and wheel are meant
     bool dragging() const { return drag != CameraDrag::None; }
 };
 

@@ -77,8 +77,10 @@ TEST_F(CalloutHands, ADragTurnsASceneWithCtrlTheViewToo) {
     EXPECT_EQ(session().callouts[0].turn, before.callouts[0].turn);
     EXPECT_LT(std::abs(glm::dot(session().camera.orientation, before.camera.orientation)), 0.999f);
     moveTo(from);
+    const vis::Camera camera = session().camera;
     turnWheel(2);
     settle();
+    EXPECT_TRUE(session().camera == camera) << "the picture below stays";
     EXPECT_GT(session().callouts[0].zoom, 1.2f);
 }
 

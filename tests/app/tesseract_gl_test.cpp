@@ -128,7 +128,7 @@ TEST_F(TesseractViews, ABoxSelectsExactlyTheSamplesInIt) {
 TEST_F(TesseractViews, ALassoSelectsTheSamplesInIt) {
     show(fuelCell(volume::LatticeKind::CC));
     tesseractView.hand = TesseractHand::Lasso;
-    tesseractView.turn = {0, -80, 0}; // z to the right, y upwards
+    tesseractView.turn = {90, -80, 0}; // z to the right, x upwards
     turnToBrush(session, source->info(), tesseractView, frameOfView());
     compute();
     const std::vector<ImVec2> corners{{220, 330}, {330, 320}, {390, 200}, {260, 170}};
@@ -166,7 +166,11 @@ TEST_F(TesseractViews, SaysWhyNoBrushCanBeDrawnAndTurnsThere) {
     const auto body = [&] { draw("tesseract", tesseractView, drawTesseractView, {800, 600}); };
     frame(body);
     EXPECT_THAT(said(body), HasSubstr("only where two axes lie along the picture's"));
-    EXPECT_THAT(said(body), HasSubstr("Turn to x and y"));
+    EXPECT_THAT(said(body), HasSubstr("Turn to x and t")) << "y is drawn by cells";
+    tesseractView.turn = {0, 0, 0};
+    tesseractView.parallel = true;
+    EXPECT_THAT(said(body), HasSubstr("The axis y is drawn by cells"));
+    EXPECT_THAT(said(body), HasSubstr("Turn to x and z"));
     turnToBrush(session, source->info(), tesseractView, frameOfView());
     EXPECT_THAT(said(body), HasSubstr("once position or time are computed"));
     const auto added = session.data.derived;
@@ -206,7 +210,7 @@ TEST_F(TesseractViews, FurtherAxesHaveSlidersNamesAndNumbers) {
     std::string all;
     for (const DrawnText& text : drawnTexts()) all += text.text + "\n";
     EXPECT_THAT(all, HasSubstr("5 axes"));
-    EXPECT_THAT(all, HasSubstr("x T"));
+    EXPECT_THAT(all, HasSubstr("xT  60"));
     const Range range = info.channelRange(info.channel(temperature));
     const auto end = [&](double value) { return formatQuantity(value, "K", (range.hi - range.lo) / 100); };
     EXPECT_TRUE(all.find(end(range.lo)) != std::string::npos || all.find(end(range.hi)) != std::string::npos);

@@ -126,7 +126,7 @@ TEST_F(Drawn, TheCellOfNowLiesAtItsShareOfTheFourthAxis) {
     frame.min = {100, 50};
     frame.max = {500, 350};
     for (const double share : {0.0, 0.25, 0.9}) {
-        const auto read = texts([&](ImDrawList& draw) { drawNowCell(draw, frame, share, "t = 3 s"); });
+        const auto read = texts([&](ImDrawList& draw) { drawNowCell(draw, frame, share, "t = 3 s", {}); });
         ASSERT_EQ(read.size(), 1u);
         EXPECT_EQ(read[0].text, "t = 3 s");
         float left = 1e9f, right = -1e9f;

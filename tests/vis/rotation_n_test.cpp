@@ -139,6 +139,9 @@ TEST(RotationN, TheNearestFacedTurnHasTwoAxesAlongThePicture) {
                     }
         }
     EXPECT_EQ(nearestFaced(RotationN(), 4), RotationN());
+    // Of some axes alone.
+    EXPECT_EQ(facedAxes(nearestFaced(RotationN(), 4, {0, 2, 3})), (std::array{0, 2}));
+    EXPECT_EQ(facedAxes(nearestFaced(planeRotation(0, 2, 1.4), 4, {1, 3})), (std::array{3, 1}));
 }
 
 TEST(Tesseract, HasSixteenCornersAndThirtyTwoEdges) {

@@ -103,11 +103,13 @@ std::optional<std::array<int, 2>> facedAxes(const RotationN& rotation, double to
     return found;
 }
 
-RotationN nearestFaced(const RotationN& rotation, int axes) {
+RotationN nearestFaced(const RotationN& rotation, int axes, const std::vector<int>& among) {
+    std::vector<int> offered = among;
+    for (int axis = 0; axis < axes && among.empty(); ++axis) offered.push_back(axis);
     std::array<int, 2> best{0, 1};
     double most = -3;
-    for (int right = 0; right < axes; ++right)
-        for (int up = 0; up < axes; ++up) {
+    for (const int right : offered)
+        for (const int up : offered) {
             const double sum = rotation.at(0, right) + rotation.at(1, up);
             if (up != right && sum > most) most = sum, best = {right, up};
         }

@@ -61,7 +61,8 @@ std::vector<double> anglesOf(const RotationN& rotation, int axes);
 std::optional<std::array<int, 2>> facedAxes(const RotationN& rotation, double tolerance = 1e-6);
 
 /// The rotation of `axes` axes that turns the picture least, by the sum of cosines, until two of the axes lie along its
-/// x and y; which, and the others in their order, the last of them turned round where a rotation needs it.
-RotationN nearestFaced(const RotationN& rotation, int axes);
+/// x and y; which, and the others in their order, the last of them turned round where a rotation needs it. The two are
+/// of `among`, which has two at least, or any where it is empty.
+RotationN nearestFaced(const RotationN& rotation, int axes, const std::vector<int>& among = {});
 
 } // namespace tessera::vis

@@ -135,6 +135,14 @@ void drawGraph(ViewContext& context, PiecesCache& cache, const volume::PieceGrap
     if (pressed && under) selectPiece(context.session, info, question, graph.pieces[*under], exact);
 }
 
+/// The graph on a page. On a small one, words give way to its lines: the note, then the events with their names.
+VectorPage piecesPage(Plot plot, const PageForm& form) {
+    const auto small = [&](double lines) { return form.size.y > 0 && plotArea({plot}, 0, form).y < lines * form.text; };
+    if (small(3)) plot.note.clear();
+    if (form.legend && small(5)) plot.series.clear(); // their names take two lines or more
+    return plotPage({std::move(plot)}, 0, form);
+}
+
 } // namespace
 
 void drawPiecesView(ViewContext& context, const std::string& pane, PiecesView& view) {
@@ -188,9 +196,9 @@ void drawPiecesView(ViewContext& context, const std::string& pane, PiecesView& v
                     .figure =
                         [found, data = source, time = context.session.time, events = view.events](const PageForm& form,
                                                                                                   const Progress&) {
-                            return plotPage({piecesPlot(data->info(), found->result, found->query,
-                                                        {.events = events, .dark = form.dark, .time = time})},
-                                            0, form);
+                            return piecesPage(piecesPlot(data->info(), found->result, found->query,
+                                                         {.events = events, .dark = form.dark, .time = time}),
+                                              form);
                         },
                     .table = [found, data = source](
                                  const Progress&) { return piecesTable(data->info(), found->result, found->query); },

@@ -31,6 +31,15 @@ template <class Recipe> std::size_t recipeKind() {
     return 0;
 }
 
+/// The nearest turn in which brushes can be drawn; nothing where fewer than two axes are to scale.
+std::optional<vis::RotationN> turnForBrush(const TesseractFrame& frame) {
+    std::vector<int> even;
+    for (int axis = 0; axis < frame.count; ++axis)
+        if (frame.axes[std::size_t(axis)].even) even.push_back(axis);
+    if (even.size() < 2) return std::nullopt;
+    return vis::nearestFaced(frame.rotation, frame.count, even);
+}
+
 std::string brushTitle(const TesseractFrame& frame, std::array<int, 2> faced) {
     return frame.axes[std::size_t(faced[0])].name + " and " + frame.axes[std::size_t(faced[1])].name;
 }
@@ -45,7 +54,7 @@ std::string brushRefusal(const TesseractFrame& frame, std::optional<std::array<i
     for (const int axis : *faced)
         if (!frame.axes[std::size_t(axis)].even)
             return "The axis " + frame.axes[std::size_t(axis)].name +
-                   " is drawn by cells: a box of it is none of positions.";
+                   " is drawn by cells, which differ in width: brushes are drawn along axes that are to scale.";
     return {};
 }
 
@@ -75,11 +84,12 @@ PlotFrame facedPlot(const TesseractFrame& frame, std::array<int, 2> faced) {
 }
 
 void turnToBrush(Session& session, const volume::DatasetInfo& info, TesseractView& view, const TesseractFrame& frame) {
-    const vis::RotationN faced = vis::nearestFaced(frame.rotation, frame.count);
-    setAngles(view, vis::anglesOf(faced, frame.count));
+    const auto faced = turnForBrush(frame);
+    if (!faced) return;
+    setAngles(view, vis::anglesOf(*faced, frame.count));
     view.parallel = true;
     view.tour = false;
-    if (const auto two = vis::facedAxes(faced)) addBrushedChannels(session, info, frame.axes, *two);
+    if (const auto two = vis::facedAxes(*faced)) addBrushedChannels(session, info, frame.axes, *two);
 }
 
 namespace {
@@ -123,9 +133,9 @@ bool drawBrushRow(ViewContext& context, TesseractView& view, const TesseractFram
     }
     std::optional<std::array<int, 2>> faced;
     const std::string refusal = brushRefusal(frame, faced);
-    const auto nearest = vis::facedAxes(vis::nearestFaced(frame.rotation, frame.count));
-    const bool byCells = faced && frame.projection.parallel;
-    if (!row(refusal, byCells || !nearest ? std::string() : "Turn to " + brushTitle(frame, *nearest))) return false;
+    const auto turned = turnForBrush(frame);
+    const auto nearest = turned ? vis::facedAxes(*turned) : std::nullopt;
+    if (!row(refusal, nearest ? "Turn to " + brushTitle(frame, *nearest) : std::string())) return false;
     turnToBrush(context.session, info, view, frame);
     return true;
 }

@@ -28,7 +28,8 @@ void addBrushedChannels(Session& session, const volume::DatasetInfo& info, const
 /// The plot of the two axes that face the viewer.
 PlotFrame facedPlot(const TesseractFrame& frame, std::array<int, 2> faced);
 
-/// Turns the view to the nearest turn in which brushes can be drawn, and adds what they need.
+/// Turns the view to the nearest turn in which brushes can be drawn, and adds what they need; leaves it where fewer
+/// than two axes are to scale.
 void turnToBrush(Session& session, const volume::DatasetInfo& info, TesseractView& view, const TesseractFrame& frame);
 
 /// A row that says why no brush can be drawn, with a button for the one click that changes this; nothing where one can

@@ -31,8 +31,8 @@ void chooseHand(ToolRow& tools, TesseractHand& hand) {
 }
 
 /// Further axes: a list with a tick for each parameter.
-void chooseFurther(ToolRow& tools, const volume::DatasetInfo& info, TesseractView& view) {
-    const std::string label = view.more.empty() ? "4 axes" : std::to_string(4 + view.more.size()) + " axes";
+void chooseFurther(ToolRow& tools, const volume::DatasetInfo& info, TesseractView& view, std::size_t axes) {
+    const std::string label = std::to_string(axes) + " axes"; // parameters that the data lack have none
     const float width = em() * 5;
     if (!tools.next(width)) return;
     ImGui::SetNextItemWidth(width);
@@ -112,7 +112,7 @@ void drawTesseractTools(ViewContext& context, TesseractView& view, const std::ve
         chooseChannel("##fourth", &info, view.fourth, "time");
         if (ImGui::IsItemHovered()) tooltip("Along the fourth axis: time, or a parameter at the time shown");
     }
-    chooseFurther(tools, info, view);
+    chooseFurther(tools, info, view, axes.size());
     chooseHand(tools, view.hand);
     const auto button = [&](const char* id, Icon icon, const char* help, bool lit = false) {
         return tools.next(iconButtonWidth(context, icon)) && iconButton(context, id, icon, help, true, lit);

@@ -13,6 +13,7 @@
 #include "vis/passes/stereo_picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -85,22 +86,46 @@ bool handleInput(TesseractCache& cache, TesseractView& view, ImVec2 size, int ax
     return moving;
 }
 
+/// Two lines in the upper right corner, above the legends: at the left they would lie over the body.
+class TesseractTitle {
+public:
+    TesseractTitle(const TesseractFrame& frame, ImVec2 max, std::array<std::string, 2> lines)
+        : lines_(std::move(lines)), right_(max.x - em() * 0.5f), top_(frame.min.y + em() * 0.4f),
+          width_(max.x - frame.min.x - em()) {}
+
+    void draw(ImDrawList& draw) const {
+        for (std::size_t i = 0; i < lines_.size(); ++i)
+            addFittedWithBackdrop(draw, {right_, topOf(i)}, {1, 0}, plotColors().faint, lines_[i], width_);
+    }
+    Rectangles corners() const {
+        Rectangles out;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            const ImVec2 size = ImGui::CalcTextSize(lines_[i].c_str());
+            out.push_back({{right_ - std::min(size.x, width_), topOf(i)}, {right_, topOf(i) + size.y}});
+        }
+        return out;
+    }
+
+private:
+    float topOf(std::size_t line) const { return top_ + em() * 1.5f * float(line); }
+
+    std::array<std::string, 2> lines_;
+    float right_, top_, width_;
+};
+
+/// `drawn`: which samples are.
+TesseractTitle titleOf(const ViewContext& context, const TesseractFrame& frame, ImVec2 max, const std::string& drawn) {
+    std::string near = nearText(frame);
+    const std::string uneven = stretchText(glm::dvec3(1), context.source->info().lattice.axes);
+    if (!uneven.empty()) near += "; " + uneven;
+    return {frame, max, {near, drawn}};
+}
+
 void drawTexts(ViewContext& context, const TesseractView& view, const TesseractFrame& frame, ImVec2 max, int channel,
-               const std::string& drawn, std::vector<std::pair<ImVec2, ImVec2>> taken) {
+               Rectangles taken) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const Session& session = context.session;
     const volume::DatasetInfo& info = context.source->info();
-    const PlotColors colors = plotColors();
-    std::string title = nearText(frame);
-    if (const std::string uneven = stretchText(glm::dvec3(1), info.lattice.axes); !uneven.empty())
-        title += "; " + uneven;
-    if (context.decoration.title) { // above the legends: at the left it would lie over the body
-        addFittedWithBackdrop(draw, {max.x - em() * 0.5f, frame.min.y + em() * 0.4f}, {1, 0}, colors.faint, title,
-                              max.x - frame.min.x - em());
-        const ImVec2 at{max.x - em() * 0.5f, frame.min.y + em() * 1.9f}, size = ImGui::CalcTextSize(drawn.c_str());
-        addFittedWithBackdrop(draw, at, {1, 0}, colors.faint, drawn, max.x - frame.min.x - em());
-        taken.push_back({{at.x - size.x, at.y}, {at.x, at.y + size.y}});
-    }
     if (!view.showLegend || !context.decoration.legend)
         return context.decoration.axes ? drawAxisNames4(draw, frame, std::move(taken)) : void();
     const TesseractAxis& fourth = frame.axes[3];
@@ -126,19 +151,17 @@ void drawTexts(ViewContext& context, const TesseractView& view, const TesseractF
     if (context.decoration.axes) drawAxisNames4(draw, frame, std::move(taken));
 }
 
-/// Lines over the points; returns the corners of their texts.
-std::vector<std::pair<ImVec2, ImVec2>> drawLines(ViewContext& context, const TesseractView& view,
-                                                 const TesseractFrame& frame) {
+/// Lines over the points, whose texts keep clear of `taken`; returns these corners and their own.
+Rectangles drawLines(ViewContext& context, const TesseractView& view, const TesseractFrame& frame, Rectangles taken) {
     const volume::DatasetInfo& info = context.source->info();
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     drawLattice4(draw, frame, view.lattice);
     if (view.showWire && context.decoration.box) drawWire(draw, frame);
     if (context.decoration.cursor) drawCursorRing(context, frame);
-    std::vector<std::pair<ImVec2, ImVec2>> taken;
     if (view.showNow && context.decoration.cursor && !frame.axes[3].channel && info.times.size() > 1) {
         const double first = info.times.front(), now = context.session.time - first;
         const double share = std::clamp(now / (info.times.back() - first), 0.0, 1.0);
-        taken.push_back(drawNowCell(draw, frame, share, timeText(info, context.session.time)));
+        taken.push_back(drawNowCell(draw, frame, share, timeText(info, context.session.time), taken));
     }
     return taken;
 }
@@ -211,10 +234,12 @@ private:
 
     void drawOver(const TesseractFrame& frame, ImVec2 max) {
         const volume::DatasetInfo& info = context_.source->info();
-        auto taken = drawLines(context_, view_, frame);
         const bool more = !cache_.cloud.answers.exact() && cache_.cloud.answers.failure().empty();
-        drawTexts(context_, view_, frame, max, channel_, cloudText(cache_.cloud, info, view_, drawn(), more),
-                  std::move(taken));
+        const TesseractTitle title = titleOf(context_, frame, max, cloudText(cache_.cloud, info, view_, drawn(), more));
+        const bool titled = context_.decoration.title;
+        auto taken = drawLines(context_, view_, frame, titled ? title.corners() : Rectangles());
+        if (titled) title.draw(list());
+        drawTexts(context_, view_, frame, max, channel_, std::move(taken));
     }
 
     ViewContext& context_;

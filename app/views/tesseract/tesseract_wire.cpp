@@ -113,7 +113,7 @@ void drawLattice4(ImDrawList& draw, const TesseractFrame& frame, int cells) {
 }
 
 std::pair<ImVec2, ImVec2> drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share,
-                                      const std::string& text) {
+                                      const std::string& text, const std::vector<std::pair<ImVec2, ImVec2>>& taken) {
     vis::PointN middle = frame.half;
     std::fill(middle.begin() + 4, middle.end(), 0);
     const double w = frame.half[3] * (2 * share - 1);
@@ -132,8 +132,11 @@ std::pair<ImVec2, ImVec2> drawNowCell(ImDrawList& draw, const TesseractFrame& fr
                 first = false;
             }
     }
-    const float below = frame.min.y + em() * 3; // of the title of the picture
-    const ImVec2 at{top.x, std::max(top.y - em() * 0.3f, below)}, size = ImGui::CalcTextSize(text.c_str());
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    ImVec2 at{top.x, std::max(top.y - em() * 0.3f, frame.min.y + size.y)};
+    for (const auto& [lo, hi] : taken) // from the top: below those that it would lie over
+        if (at.x - size.x / 2 < hi.x && at.x + size.x / 2 > lo.x && at.y - size.y < hi.y && at.y > lo.y)
+            at.y = hi.y + size.y + em() * 0.3f;
     addTextWithBackdrop(draw, at, {0.5f, 1}, colors.cursor, text.c_str());
     return {{at.x - size.x / 2, at.y - size.y}, {at.x + size.x / 2, at.y}};
 }

@@ -35,9 +35,10 @@ vis::TransferFunction fourthColors();
 void drawWire(ImDrawList& draw, const TesseractFrame& frame);
 /// Lines of the lattice of `cells` cells along each of the first four axes, in the middle of the others.
 void drawLattice4(ImDrawList& draw, const TesseractFrame& frame, int cells);
-/// The cell at a share 0..1 of the fourth axis, in the middle of those behind it; returns the corners of its text.
+/// The cell at a share 0..1 of the fourth axis, in the middle of those behind it; returns the corners of its text,
+/// which stands below those of `taken` that it would lie over.
 std::pair<ImVec2, ImVec2> drawNowCell(ImDrawList& draw, const TesseractFrame& frame, double share,
-                                      const std::string& text);
+                                      const std::string& text, const std::vector<std::pair<ImVec2, ImVec2>>& taken);
 /// Names of the axes with their units beside the edges of one corner, ticks with numbers along these and at their ends;
 /// none where rectangles are taken.
 void drawAxisNames4(ImDrawList& draw, const TesseractFrame& frame, std::vector<std::pair<ImVec2, ImVec2>> taken = {});

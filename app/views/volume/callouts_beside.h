@@ -29,6 +29,9 @@ public:
     /// True while something moves.
     bool take(const SpaceFrame& space, bool free);
 
+    /// Whether the mouse lies over one, as found by `take`, or holds it.
+    bool held() const { return !context_.session.callouts.empty() && cache_.held >= 0; }
+
     /// Finds their places beside what is `taken`, to which the boxes are added.
     void reserve(const SpaceFrame& space, bool moving, Rectangles& taken);
     /// Draws them there, over the picture of a scene and its axes.

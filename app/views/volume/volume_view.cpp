@@ -139,7 +139,8 @@ private:
         mouseArea("picture", picture_.size,
                   ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle |
                       ImGuiButtonFlags_MouseButtonRight);
-        const bool hovered = ImGui::IsItemHovered();
+        cache_.hand.covered = callouts_.held(); // also in the frame in which the menu of one opens
+        const bool hovered = ImGui::IsItemHovered() && !cache_.hand.covered;
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         cache_.hand.blocked =
             hasTriad_ && hovered && std::hypot(mouse.x - triadAt_.x, mouse.y - triadAt_.y) < triad_ + em() * 0.5f;
