@@ -127,18 +127,20 @@ void showWhatVaries(Session& session, const volume::BrickSource& source, std::ve
 
 namespace {
 
-/// Whether a layer is made of particles that were released before the time shown.
-bool looksBack(const vis::Layer& layer) {
+/// Whether a layer is made of particles that were released before the time shown, and the data have what moves them.
+bool looksBack(const vis::Layer& layer, const volume::DatasetInfo& info) {
     const auto* const flow = std::get_if<vis::FlowLayer>(&layer.technique);
     return layer.visible && flow && vis::followsParticles(flow->kind) && flow->kind != vis::FlowKind::Pathlines &&
-           !(flow->kind == vis::FlowKind::Timelines && flow->together);
+           !(flow->kind == vis::FlowKind::Timelines && flow->together) &&
+           std::ranges::find(info.parameters, flow->vector, &volume::Parameter::name) != info.parameters.end();
 }
 
 } // namespace
 
 void showLastIfEmpty(Session& session, const volume::BrickSource& source, std::vector<std::string>& messages) {
     const volume::DatasetInfo& info = source.info();
-    const auto particles = std::ranges::find_if(session.layers, looksBack);
+    const auto particles =
+        std::ranges::find_if(session.layers, [&](const vis::Layer& layer) { return looksBack(layer, info); });
     if (info.times.size() > 1 && session.time <= info.times.front() && particles != session.layers.end()) {
         session.time = info.times.back();
         messages.push_back(layerName(*particles) + ": its particles begin at the first time, so the last one is shown");

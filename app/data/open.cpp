@@ -269,8 +269,8 @@ Opened openData(DataRef data, std::optional<SessionDocument> layout, const OpenR
         }
     }
     if (layout && layoutCuts(layout->session, data, sources.numbers->info())) {
-        data.timeAxis = layout->session.data.timeAxis;
-        sources = deriveBoth(cutByPlane(underived(sources), data), data.derived, opened.messages);
+        data.timeAxis = planeOfLayout(layout->session, sources.numbers->info(), opened.messages);
+        if (data.timeAxis) sources = deriveBoth(cutByPlane(underived(sources), data), data.derived, opened.messages);
     } else if (layout && layout->session.data.timeAxis && !data.timeAxis) {
         opened.messages.emplace_back(kNoTimesToCut);
     }

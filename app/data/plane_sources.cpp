@@ -1,7 +1,11 @@
 #include "app/data/plane_sources.h"
 
 #include "app/data/picture_lattice.h"
+#include "app/ui/ticks.h"
+#include "volume/base/error.h"
 #include "volume/sources/plane_source.h"
+
+#include <variant>
 
 namespace tessera::app {
 
@@ -17,6 +21,16 @@ Sources cutByPlane(const Sources& whole, const DataRef& data) {
     return {drawnOn(whole.packed ? cut(whole.packed) : numbers, data.lattice), numbers, std::move(origin)};
 }
 
+Sources cutIfMet(const Sources& whole, const DataRef& data, std::vector<std::string>& messages) {
+    try {
+        volume::planeOf(whole.numbers->info(), *data.timeAxis);
+    } catch (const Error& error) {
+        messages.push_back(error.reason() + ": the data are shown as they are");
+        return whole;
+    }
+    return cutByPlane(whole, data);
+}
+
 std::optional<Sources> cutAgain(const Sources& shown, const DataRef& data, std::vector<std::string>& messages,
                                 const Progress& progress) {
     if (!data.timeAxis || !shown.origin.spaceOfPlane || data.packed) return std::nullopt;
@@ -24,8 +38,41 @@ std::optional<Sources> cutAgain(const Sources& shown, const DataRef& data, std::
     return deriveBoth(cutByPlane(whole, data), data.derived, messages, progress);
 }
 
+void tellTimeDirection(const std::vector<volume::DerivedParameter>& derived, const volume::DatasetInfo& info,
+                       std::vector<std::string>& messages) {
+    if (!info.timeAxis()) return;
+    std::string names;
+    for (const volume::DerivedParameter& each : derived)
+        if (std::holds_alternative<volume::GradientRecipe>(each.recipe) ||
+            std::holds_alternative<volume::DivergenceRecipe>(each.recipe) ||
+            std::holds_alternative<volume::VorticityRecipe>(each.recipe))
+            names += (names.empty() ? "" : ", ") + each.name;
+    if (names.empty()) return;
+    messages.push_back(names + ": along one axis, which is time, 1 " +
+                       (info.lengthUnit.empty() ? "of length" : info.lengthUnit) + " stands for " +
+                       formatQuantity(info.plane->timePerLength, info.timeUnit));
+}
+
 bool layoutCuts(const Session& layout, const DataRef& data, const volume::DatasetInfo& info) {
     return layout.data.timeAxis && !data.timeAxis && !info.plane && info.times.size() > 1;
+}
+
+std::optional<volume::TimeAxis> planeOfLayout(const Session& layout, const volume::DatasetInfo& info,
+                                              std::vector<std::string>& messages) {
+    volume::TimeAxis plane = layout.data.timeAxis.value();
+    const glm::dvec3 size = info.bounds.size();
+    if (!(size[int(plane.axis)] > 0)) {
+        const int longest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        plane.axis = static_cast<volume::SpaceAxis>(longest);
+    }
+    try {
+        volume::planeOf(info, plane);
+        return plane;
+    } catch (const Error& error) {
+        messages.push_back("The plane of the layout cannot be shown: " + error.reason() +
+                           ". The data are shown as they are.");
+        return std::nullopt;
+    }
 }
 
 } // namespace tessera::app

@@ -314,7 +314,7 @@ Sources openStored(const DataRef& data, std::vector<std::string>& messages, cons
             throw Error(error.reason(), error.file().empty() ? path : error.file(), error.place());
         }
     }
-    return data.timeAxis ? cutByPlane(whole, data) : whole;
+    return data.timeAxis ? cutIfMet(whole, data, messages) : whole;
 }
 
 } // namespace
@@ -323,6 +323,7 @@ Sources deriveBoth(const Sources& sources, const std::vector<volume::DerivedPara
                    std::vector<std::string>& messages, const Progress& progress) {
     std::shared_ptr<const volume::BrickSource> numbers;
     const auto bounded = withBounds(wanted, sources.origin, sources.numbers->info());
+    tellTimeDirection(wanted, sources.numbers->info(), messages);
     return changed(sources, [&](const std::shared_ptr<const volume::BrickSource>& source) {
         if (numbers) return volume::deriveLike(*numbers, source, bounded);
         return numbers = volume::deriveAll(source, bounded, messages, progress); // they come first

@@ -116,17 +116,13 @@ void keepHiddenFocus(Json& document) {
         (*selection)["focusOpacity"] = 0;
 }
 
-/// Up to schema 5 paths took a vector of 1 as 1 length per time, whatever the units of the data.
-void keepSpeedOfPaths(Json& document) {
-    const auto layers = document.find("layers");
-    if (layers == document.end() || !layers->is_array()) return;
-    for (Json& layer : *layers) {
-        if (!layer.is_object()) continue;
-        const auto technique = layer.find("technique");
-        if (technique == layer.end() || !technique->is_object()) continue;
-        const auto kind = technique->find("kind");
-        if (kind != technique->end() && *kind == "pathlines") (*technique)["ignoreUnits"] = true;
-    }
+/// Up to schema 5 paths took a vector of 1 as 1 length per time, whatever the units of the data: in every list of
+/// layers and in the steps of the history.
+void keepSpeedOfPaths(Json& json) {
+    if (!json.is_structured()) return;
+    if (json.is_object() && json.value("type", Json()) == "flow" && json.value("kind", Json()) == "pathlines")
+        json["ignoreUnits"] = true;
+    for (Json& part : json) keepSpeedOfPaths(part);
 }
 
 } // namespace

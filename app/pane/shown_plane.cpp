@@ -92,7 +92,9 @@ std::string followsText(const volume::DatasetInfo& info, int axis, double positi
     const bool time = !plane.hasTimeAxis();
     const LengthUnit unit = time ? LengthUnit{info.timeUnit} : suitableLength(info.lengthUnit, size);
     const std::string name = time ? timeWord(info) : std::string(1, "xyz"[plane.solved]);
-    const double digits = size * unit.perUnit / 100;
+    const double digits = size * unit.perUnit / 100, rounding = 1e-9 * size;
+    if (range.hi < plane.lo[plane.solved] - rounding || range.lo > plane.hi[plane.solved] + rounding)
+        return name + " outside of the data";
     if (range.hi - range.lo <= 1e-6 * size)
         return name + " = " + formatQuantity(range.lo * unit.perUnit, unit.name, digits);
     // What lies beyond the data is not there.

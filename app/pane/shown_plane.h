@@ -18,7 +18,7 @@ std::optional<volume::SpaceTimePlane> planeShown(const Session& session, const v
 std::string planeText(const volume::DatasetInfo& info, const volume::SpaceTimePlane& plane);
 
 /// In a slice of such data across an axis: what follows there, "t = 3.20 s", or where it is not the same everywhere
-/// "t 0.00 to 3.20 s". "" of other data.
+/// "t 0.00 to 3.20 s"; "t outside of the data" where nothing is. "" of other data.
 std::string followsText(const volume::DatasetInfo& info, int axis, double position);
 
 /// The first and the last time at which a plane meets the space of the data that it is cut from.

@@ -62,7 +62,10 @@ GlyphQuery glyphQuery(const vis::GlyphLayer& glyphs, vis::BrushEffect effect, co
 /// Nothing for layers that are drawn otherwise.
 std::optional<GeometryQuery> queryOf(const vis::Layer& layer, const Session& session, const volume::DatasetInfo& info) {
     const vis::Technique& technique = layer.technique;
-    if (const auto* flow = std::get_if<vis::FlowLayer>(&technique)) return flowQuery(*flow, session, info);
+    if (const auto* flow = std::get_if<vis::FlowLayer>(&technique)) {
+        if (info.timeAxis()) return std::nullopt; // vectors have no direction between lengths and times
+        return flowQuery(*flow, session, info);
+    }
     if (const auto* glyphs = std::get_if<vis::GlyphLayer>(&technique))
         return glyphQuery(*glyphs, layer.brushes, session, info);
     const auto* iso = std::get_if<vis::IsoLayer>(&technique);

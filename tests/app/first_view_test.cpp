@@ -299,10 +299,11 @@ TEST(FirstView, ALayoutOfParticlesShowsTheLastTime) {
     const auto source = laterOn(true);
     const double first = source->info().times.front(), last = source->info().times.back();
     ASSERT_LT(first, last);
-    const auto timeFor = [&](vis::FlowKind kind, bool together, double asked, bool visible = true) {
+    const auto timeFor = [&](vis::FlowKind kind, bool together, double asked, bool visible = true,
+                             const std::string& vector = "same") {
         Session session = defaultSession(source->info(), {});
         session.time = asked;
-        vis::FlowLayer flow{.vector = "same", .channel = "|same|"};
+        vis::FlowLayer flow{.vector = vector, .channel = "|same|"};
         flow.kind = kind;
         flow.together = together;
         session.layers = {{"flow", visible, flow}};
@@ -315,6 +316,7 @@ TEST(FirstView, ALayoutOfParticlesShowsTheLastTime) {
         EXPECT_EQ(timeFor(kind, false, first), last) << int(kind);
         EXPECT_EQ(timeFor(kind, false, 0.5 * (first + last)), 0.5 * (first + last)) << "of the layout";
         EXPECT_EQ(timeFor(kind, false, first, false), first) << "hidden";
+        EXPECT_EQ(timeFor(kind, false, first, true, ""), first) << "nothing moves particles";
     }
     EXPECT_EQ(timeFor(Timelines, true, first), first) << "drawn where they are later";
     for (const vis::FlowKind kind : {Tubes, Pathlines}) EXPECT_EQ(timeFor(kind, false, first), first) << int(kind);

@@ -228,6 +228,38 @@ TEST_F(OpenTest, ALayoutBringsItsPlaneToDataThatHaveTheTimes) {
     EXPECT_NE(std::ranges::find(whole.messages, kNoTimesToCut), whole.messages.end()) << "it says why";
 }
 
+// The panel lets a plane be typed that does not meet the data; a session that was saved then must open again.
+TEST_F(OpenTest, ASessionWhosePlaneDoesNotMeetTheDataOpens) {
+    DataRef data;
+    data.model = "fuel-cell";
+    data.settings = {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 4}};
+    data.timeAxis = volume::TimeAxis{.equation = volume::PlaneEquation{.d = 1, .e = -77}};
+    std::vector<std::string> messages;
+    const Sources sources = openSources(data, messages);
+    EXPECT_EQ(sources.numbers->info().times.size(), 4u);
+    EXPECT_FALSE(sources.numbers->info().plane);
+    ASSERT_FALSE(messages.empty());
+    EXPECT_THAT(messages.back(), testing::HasSubstr("does not meet the data")) << "it says why";
+    data.timeAxis->equation->e = -sources.numbers->info().times[1];
+    EXPECT_TRUE(openSources(data, messages).numbers->info().plane);
+}
+
+TEST_F(OpenTest, ThePlaneOfALayoutFitsOtherData) {
+    volume::DatasetInfo flat;
+    flat.bounds = {glm::dvec3(0), glm::dvec3(2, 3, 0)};
+    flat.times = {0, 1};
+    Session layout;
+    layout.data.timeAxis = volume::TimeAxis{volume::SpaceAxis::Z, 0.5, 30};
+    std::vector<std::string> messages;
+    const auto fitted = planeOfLayout(layout, flat, messages);
+    ASSERT_TRUE(fitted);
+    EXPECT_EQ(*fitted, (volume::TimeAxis{volume::SpaceAxis::Y, 0.5, 30})) << "they have no z";
+    EXPECT_TRUE(messages.empty());
+    layout.data.timeAxis->equation = volume::PlaneEquation{.d = 1, .e = -7};
+    EXPECT_FALSE(planeOfLayout(layout, flat, messages)) << "a time that they do not have";
+    EXPECT_EQ(messages.size(), 1u) << "it says why";
+}
+
 TEST_F(OpenTest, APictureCarriesItsSession) {
     const Opened opened = open(rawRequest(raw("a.raw")));
     vis::Image image;

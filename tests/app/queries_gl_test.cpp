@@ -10,6 +10,7 @@
 #include "codec/pack/pack.h"
 #include "tests/app/views_fixture.h"
 #include "volume/reconstruct/probe.h"
+#include "volume/sources/plane_source.h"
 
 #include <atomic>
 #include <chrono>
@@ -390,6 +391,26 @@ TEST_F(AsyncQueries, CancelledSurfaceWaitsForAnotherQuery) {
     finish(get);
     ViewContext now = context();
     EXPECT_EQ(get(now).size(), 1u);
+}
+
+// Vectors are lengths per time: along an axis that is time they have no direction.
+TEST_F(AsyncQueries, FlowIsNotDrawnWhereAnAxisIsTime) {
+    AsyncGeometry answers;
+    session.layers = {{"flow", true, vis::FlowLayer{.vector = "U", .channel = "T"}}};
+    const auto get = [&](ViewContext& now) { return answers.get(now, "pane", false); };
+    const auto drawn = [&] {
+        finish(get);
+        ViewContext now = context();
+        return get(now).size();
+    };
+    const auto space = source;
+    EXPECT_EQ(drawn(), 1u);
+    show(volume::makePlaneSource(space, {.degrees = 0}));
+    session.layers = {{"flow", true, vis::FlowLayer{.vector = "U", .channel = "T"}}};
+    EXPECT_EQ(drawn(), 1u) << "all of space at one time";
+    show(volume::makePlaneSource(space, {volume::SpaceAxis::Z, 0.5}));
+    session.layers = {{"flow", true, vis::FlowLayer{.vector = "U", .channel = "T"}}};
+    EXPECT_EQ(drawn(), 0u);
 }
 
 TEST_F(AsyncQueries, CancelledSamplesOfTheTesseractWaitForAnotherQuery) {

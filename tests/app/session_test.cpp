@@ -186,6 +186,14 @@ TEST_F(SessionFileTest, PathsOfEarlierVersionsKeepTheirSpeed) {
     EXPECT_EQ(layer("5", "pathlines").speed, 1000);
     EXPECT_FALSE(layer("6", "pathlines").ignoreUnits);
     EXPECT_FALSE(layer("5", "tubes").ignoreUnits);
+    const std::string path = R"({"technique": {"type": "flow", "vector": "U", "channel": "T", "kind": "pathlines"}})";
+    const Session own =
+        parseSession(R"({"schema": 5, "views": {"v": {"type": "volume", "layers": [)" + path + "]}}}", "x").session;
+    const vis::Layer& shown = std::get<VolumeView>(own.views.at("v")).layers.value().at(0);
+    EXPECT_TRUE(std::get<vis::FlowLayer>(shown.technique).ignoreUnits) << "layers of one view";
+    Json step = Json::parse(R"({"schema": 5, "history": [{"op": "add", "path": "/layers/0", "value": )" + path + "}]}");
+    migrate(step, "x");
+    EXPECT_EQ(step["history"][0]["value"]["technique"]["ignoreUnits"], true) << "what can be undone";
 }
 
 TEST_F(SessionFileTest, LayersOfALensThatIsMissingAreHidden) {

@@ -70,6 +70,16 @@ TEST_F(ShownPlane, SaysPlaceTimeAndSpeed) {
                 MatchesRegex("x \\+ 2(\\.0*)? y - 0\\.50* t - 3(\\.0*)? = 0 \\(mm, s\\)"));
 }
 
+TEST_F(ShownPlane, ASliceSaysWhatFollowsThere) {
+    shows({volume::SpaceAxis::Z, 0.9, 30, 0.1}); // t follows from z: before the first time where z is small
+    const volume::DatasetInfo& info = source->info();
+    ASSERT_EQ(info.plane->solved, 3);
+    const auto at = [&](double share) { return followsText(info, 2, info.bounds.lo.z + share * info.bounds.size().z); };
+    EXPECT_THAT(at(0.2), testing::EndsWith(" outside of the data"));
+    EXPECT_THAT(at(0.9), MatchesRegex("t = .* s"));
+    EXPECT_EQ(followsText(space->info(), 2, 0), "");
+}
+
 TEST_F(ShownPlane, TheTimeShownStaysWhileAPlaneIsMoved) {
     const volume::DatasetInfo& whole = space->info();
     for (const double degrees : {20.0, 70.0}) {

@@ -77,6 +77,33 @@ TEST(FlowParticles, MoveByTheUnitsOfTheData) {
     EXPECT_NEAR(reach("m/s", "m"), 10, 1e-3);
 }
 
+// A place of a flat box that is stretched and shrunk again lies beside it by rounding.
+TEST(FlowParticles, FlatDataHaveSeedsWhateverTheStretch) {
+    volume::Dataset data;
+    data.info.lattice.size = {9, 9, 1};
+    data.info.lattice.origin = {0, 0, 0.1};
+    data.info.bounds = {{0, 0, 0.1}, {8, 8, 0.1}};
+    data.info.times = {0};
+    data.info.parameters.resize(1);
+    data.info.parameters[0].name = "U";
+    data.info.parameters[0].components = 3;
+    data.info.parameters[0].ranges = {{0, 1}, {0, 0}, {0, 0}, {0, 1}};
+    data.read = [lattice = data.info.lattice](int, int component, int) {
+        volume::Field field = volume::makeField(lattice, volume::ScalarType::F32);
+        for (std::size_t i = 0; i < field.count(); ++i) field.as<float>()[i] = component == 0 ? 1.0f : 0.0f;
+        return field;
+    };
+    const auto source = volume::makeMemorySource(std::move(data), {});
+    ASSERT_NE(0.1 * 1.5 / 1.5, 0.1);
+    for (const FlowKind kind : {FlowKind::Tubes, FlowKind::Arrows, FlowKind::Speedlines}) {
+        FlowLayer layer{.vector = "U", .channel = "|U|"};
+        layer.kind = kind;
+        layer.seeds = volume::SeedShape::Even;
+        layer.separation = 0.2f;
+        EXPECT_GT(makeFlow(*source, layer, 0, {1, 1, 1.5})->mesh.positions.size(), 100u) << int(kind);
+    }
+}
+
 TEST(FlowParticles, PathsGoThereAndBackFromSeedsAtRest) {
     std::vector<double> times;
     for (int i = 0; i <= 60; ++i) times.push_back(i * 2 * std::numbers::pi / 60);

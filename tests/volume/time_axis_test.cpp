@@ -1,10 +1,12 @@
 #include "volume/sources/plane_source.h"
 
 #include "volume/base/error.h"
+#include "volume/derived/derived.h"
 #include "volume/reconstruct/probe.h"
 #include "volume/reconstruct/sample_grid.h"
 #include "volume/sources/memory_source.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -107,6 +109,22 @@ TEST(TimeAxis, APlaneAtAllTimesKeepsItsValuesAndItsShape) {
                 EXPECT_EQ(values.isPresent(i), k < 2) << k;
             }
         }
+}
+
+TEST(TimeAxis, ADerivedTimeIsThatOfEachPoint) {
+    const TimeAxis turned{.equation = PlaneEquation{0, 0, 1, -0.25, -2.9}}; // z = 2.9 + t / 4 leaves the data after 4.4
+    const auto plane = derive(makePlaneSource(moving(LatticeKind::CC), turned), {"clock", "s", TimeRecipe{}});
+    const DatasetInfo& info = plane->info();
+    const SampleGrid clock = readSamples(*plane, info.findChannel("clock").value(), 0, 0);
+    const SampleGrid own = readSamples(*plane, info.findChannel("time").value(), 0, 0);
+    for (std::size_t i = 0; i < clock.values.size(); ++i) {
+        ASSERT_EQ(clock.isPresent(i), own.isPresent(i));
+        if (own.isPresent(i)) {
+            EXPECT_EQ(clock.values[i], own.values[i]);
+        }
+    }
+    EXPECT_FALSE(clock.isPresent(clock.values.size() - 1));
+    EXPECT_EQ(info.channelRange(info.channel(*info.findChannel("clock"))), (Range{1, 5})) << "not one time everywhere";
 }
 
 TEST(TimeAxis, AnyAxisAndLattice) {

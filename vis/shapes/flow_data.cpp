@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -78,10 +79,9 @@ Weight byInterest(const volume::BrickSource& source, const DoiFunction& interest
     };
 }
 
-/// The line through a seed as it is drawn, the seed as it was given.
+/// The line through a seed as it is drawn, the seed as it was given. `place`: of the seed, in space.
 std::vector<glm::dvec3> drawnLine(const FlowData& data, const volume::StreamlineSettings& settings,
-                                  const volume::AxisMaps& axes, glm::dvec3 stretch, glm::dvec3 seed) {
-    const glm::dvec3 place = axes.toSpace(seed / stretch);
+                                  const volume::AxisMaps& axes, glm::dvec3 stretch, glm::dvec3 seed, glm::dvec3 place) {
     std::vector<glm::dvec3> line = volume::streamline(data.field, place, settings);
     for (glm::dvec3& vertex : line) vertex = vertex == place ? seed : axes.toSheet(vertex) * stretch;
     return line;
@@ -156,8 +156,12 @@ FlowSeeds seedsOf(const volume::BrickSource& source, const FlowData& data, const
     if (const auto channel = layer.weight.empty() ? std::nullopt : info.findChannel(layer.weight))
         weights.push_back(byChannel(source, *channel, time, data.level, progress));
     if (layer.seedBrushed && interest) weights.push_back(byInterest(source, *interest, time, data.level, progress));
+    // Seeds of flat data, and at a border, may lie outside by the rounding of the stretch.
+    const auto placeOf = [&](glm::dvec3 sheet) {
+        return glm::clamp(axes.toSpace(sheet), info.bounds.lo, info.bounds.hi);
+    };
     const auto weightAt = [&](glm::dvec3 sheet) {
-        const glm::dvec3 place = axes.toSpace(sheet);
+        const glm::dvec3 place = placeOf(sheet);
         double product = 1;
         for (const Weight& weight : weights)
             if (product > 0) product *= weight(place);
@@ -177,7 +181,7 @@ FlowSeeds seedsOf(const volume::BrickSource& source, const FlowData& data, const
         volume::EvenLines even = volume::evenLines(
             [&](glm::dvec3 seed) {
                 progress.advance(0);
-                return drawnLine(data, lines, axes, stretch, seed);
+                return drawnLine(data, lines, axes, stretch, seed, placeOf(seed / stretch));
             },
             [&](glm::dvec3 place) { return weightAt(place / stretch) > 0; },
             {.from = settings.from * stretch,
@@ -187,11 +191,11 @@ FlowSeeds seedsOf(const volume::BrickSource& source, const FlowData& data, const
         out = {std::move(even.seeds), std::move(even.lines)};
         for (auto& line : out.lines)
             for (glm::dvec3& vertex : line) vertex = axes.toSpace(vertex / stretch);
-        for (glm::dvec3& seed : out.places) seed = axes.toSpace(seed / stretch);
+        for (glm::dvec3& seed : out.places) seed = placeOf(seed / stretch);
         return out;
     }
     out.places = volume::placeSeeds(settings, weightAt);
-    for (glm::dvec3& seed : out.places) seed = axes.toSpace(seed);
+    for (glm::dvec3& seed : out.places) seed = placeOf(seed);
     return out;
 }
 

@@ -103,7 +103,8 @@ std::vector<SeedLine> seedLinesOf(const ParticleWork& work) {
     const volume::Box& bounds = work.info().bounds;
     const glm::dvec3 from = bounds.lo + bounds.size() * glm::dvec3(work.layer.from);
     const glm::dvec3 to = bounds.lo + bounds.size() * glm::dvec3(work.layer.to);
-    if (work.layer.seeds != volume::SeedShape::Plane) return {{from, to}};
+    const auto inside = [&](glm::dvec3 place) { return glm::clamp(place, bounds.lo, bounds.hi); }; // despite rounding
+    if (work.layer.seeds != volume::SeedShape::Plane) return {{inside(from), inside(to)}};
     const volume::AxisMaps& axes = work.info().lattice.axes;
     const glm::dvec3 lo = axes.toSheet(from), hi = axes.toSheet(to), edges = glm::abs((hi - lo) * work.stretch);
     const int across = volume::thinnestAxis(edges);
@@ -117,7 +118,7 @@ std::vector<SeedLine> seedLinesOf(const ParticleWork& work) {
         begin[onward] = end[onward] = (row + 0.5) / rows;
         begin[along] = 0;
         end[along] = 1;
-        out.push_back({axes.toSpace(glm::mix(lo, hi, begin)), axes.toSpace(glm::mix(lo, hi, end))});
+        out.push_back({inside(axes.toSpace(glm::mix(lo, hi, begin))), inside(axes.toSpace(glm::mix(lo, hi, end)))});
     }
     return out;
 }

@@ -105,7 +105,9 @@ public:
 private:
     /// Ranges of the channels: exact for coordinates, from 0 on for an uncertainty, else of a coarse level.
     std::vector<Range> scan(int channels, const Progress& progress) const {
-        if (std::holds_alternative<TimeRecipe>(derived_.recipe)) return {{info_.times.front(), info_.times.back()}};
+        if (std::holds_alternative<TimeRecipe>(derived_.recipe))
+            return {info_.plane ? Range{info_.plane->lo.w, info_.plane->hi.w}
+                                : Range{info_.times.front(), info_.times.back()}};
         if (std::holds_alternative<PiecesRecipe>(derived_.recipe)) return {{0, double(std::max(1, bricks_.pieces()))}};
         if (const auto* uncertainty = std::get_if<UncertaintyRecipe>(&derived_.recipe)) {
             const double bound = uncertainty->bound.value_or(0);

@@ -318,8 +318,13 @@ struct DerivedBricks::Impl {
     }
 
     Bricks make(const TimeRecipe&, const BrickKey& key) const {
+        const auto& plane = source_->info().plane; // whose samples have a time each; absent where it has left its data
         Bricks out(1, empty(key));
-        std::fill(out[0].values.begin(), out[0].values.end(), float(timeOf(key)));
+        SamplePositions position(source_->grid(), key.index, key.level);
+        for (std::size_t i = 0; i < out[0].values.size(); ++i, position.next()) {
+            glm::dvec4 point = source_->info().pointAt(position.at(), timeOf(key));
+            !plane || plane->reaches(point) ? setComputed(out[0], i, point.w) : setAbsent(out[0], i);
+        }
         return out;
     }
 

@@ -138,7 +138,8 @@ void addUnpackCommand(CLI::App& app) {
         ->expected(5);
     addDeriveOption(*command, request->derived);
     addRemoteOptions(*command, request->remote);
-    command->get_option("--derive")->excludes("--plane");
+    for (const char* const other : {"--derive", "--level", "--times"}) // a plane is of all samples and all times
+        command->get_option(other)->excludes("--plane");
     command
         ->add_option_function<std::string>(
             "--time-filter",

@@ -53,17 +53,20 @@ bool drawRegion(const WidgetContext& widgets, vis::IsoLayer& surface, const volu
     return true;
 }
 
+void tellFaintly(const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
+}
+
 /// By how much a vector moves particles, above the factor on it.
 void tellSpeed(const vis::FlowLayer& flow, const volume::DatasetInfo& info) {
     if (!vis::followsParticles(flow.kind)) return;
     const auto vector = std::ranges::find(info.parameters, flow.vector, &volume::Parameter::name);
     if (vector == info.parameters.end()) return;
-    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-    ImGui::TextWrapped("%s", flow.ignoreUnits ? ("A vector of 1 is taken as 1 " + info.lengthFactor() + " per " +
-                                                 (info.timeUnit.empty() ? "time" : info.timeUnit))
-                                                    .c_str()
-                                              : volume::flowUnitsText(info, *vector).c_str());
-    ImGui::PopStyleColor();
+    tellFaintly(flow.ignoreUnits ? "A vector of 1 is taken as 1 " + info.lengthFactor() + " per " +
+                                       (info.timeUnit.empty() ? "time" : info.timeUnit)
+                                 : volume::flowUnitsText(info, *vector));
 }
 
 /// Whether a layer has a transfer function of its own, which begins as the one that it had.
@@ -113,6 +116,8 @@ void drawLayerSettings(ViewContext& context, const WidgetContext& widgets, vis::
             const auto* const flow = std::get_if<vis::FlowLayer>(&layer.technique);
             const auto kind = glyphs ? glyphs->kind : vis::GlyphKind();
             drawMembers(member.inside(), place.under(field.key), [&](Value, const FieldInfo& own) {
+                if (flow && own.key == "vector" && widgets.info->timeAxis())
+                    tellFaintly("Not drawn: an axis of these data is time, and vectors have no direction along it.");
                 if (flow && own.key == "speed") tellSpeed(*flow, *widgets.info);
                 if (glyphs && own.key == "parts") return drawGlyphParts(widgets, *glyphs);
                 return surface && drawRegion(widgets, *surface, *widgets.info, own);
