@@ -106,7 +106,8 @@ private:
     /// Ranges of the channels: exact for coordinates, from 0 on for an uncertainty, else of a coarse level.
     std::vector<Range> scan(int channels, const Progress& progress) const {
         if (std::holds_alternative<TimeRecipe>(derived_.recipe)) return {{info_.times.front(), info_.times.back()}};
-        if (std::holds_alternative<PiecesRecipe>(derived_.recipe)) return {{0, double(std::max(1, bricks_.pieces()))}};
+        if (std::holds_alternative<PiecesRecipe>(derived_.recipe))
+            return {{0, double(std::max(1, bricks_.pieces(progress)))}};
         if (const auto* uncertainty = std::get_if<UncertaintyRecipe>(&derived_.recipe)) {
             const double bound = uncertainty->bound.value_or(0);
             return {{0, bound > 0 ? bound : 1}};
