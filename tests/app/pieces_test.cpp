@@ -74,6 +74,8 @@ TEST_F(PiecesGraph, DrawsVolumesAsWidthsAtTheirTimes) {
     for (const PlotFlow& flow : plot.flows) {
         ASSERT_EQ(flow.points.size(), flow.half.size());
         EXPECT_TRUE(std::ranges::is_sorted(flow.points, {}, &glm::dvec2::x));
+        EXPECT_GE(flow.points.front().x, plot.x.range.lo) << "beside the plot";
+        EXPECT_LE(flow.points.back().x, plot.x.range.hi);
         for (std::size_t i = 0; i < flow.points.size(); ++i)
             for (std::size_t p = 0; p < places.size(); ++p)
                 if (places[p] == flow.points[i]) {

@@ -316,8 +316,9 @@ Plot piecesPlot(const volume::DatasetInfo& info, const PieceGraph& graph, const 
     for (std::size_t p = 0; p < places.size(); ++p) {
         PlotFlow& flow = tracks[std::size_t(graph.pieces[p].track)];
         if (flow.points.size() != 1) continue;
-        const glm::dvec2 reach(quarterStep(info.times, graph.pieces[p].time), 0);
-        flow.points = {places[p] - reach, places[p] + reach};
+        const double reach = quarterStep(info.times, graph.pieces[p].time);
+        flow.points = {{std::max(places[p].x - reach, plot.x.range.lo), places[p].y},
+                       {std::min(places[p].x + reach, plot.x.range.hi), places[p].y}};
         flow.half.push_back(flow.half.front());
     }
     for (std::size_t t = 1; t < tracks.size(); ++t) plot.flows.push_back(std::move(tracks[t]));
