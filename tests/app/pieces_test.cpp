@@ -139,7 +139,7 @@ TEST_F(PiecesGraph, SaysTimesAlongTheAxisOfAPlaneThatIsTime) {
     };
     EXPECT_EQ(column("centroid t").unit, info.timeUnit);
     EXPECT_EQ(column("centroid t").numbers[0], graph.pieces[0].centroid.z * 0.5);
-    EXPECT_EQ(column("volume").unit, "mm2 " + info.timeUnit);
+    EXPECT_EQ(column("volume").unit, info.lengthUnit + "2 " + info.timeUnit);
     EXPECT_EQ(column("volume").numbers[0], graph.pieces[0].volume * 0.5);
 }
 
