@@ -66,13 +66,16 @@ TEST_F(PiecesGraph, HasALaneForEachTrackThatIsThere) {
 
 TEST_F(PiecesGraph, DrawsVolumesAsWidthsAtTheirTimes) {
     const volume::DatasetInfo& info = source->info();
-    const Plot plot = piecesPlot(info, graph, question, {});
-    const std::vector<glm::dvec2> places = piecePlaces(info, graph);
+    const PiecesLayout layout = layOutPieces(info, graph);
+    const Plot plot = piecesPlot(info, graph, question, {}, layout);
+    const std::vector<glm::dvec2>& places = layout.places;
     const auto largest = std::ranges::max_element(graph.pieces, {}, &volume::Piece::volume);
     std::size_t checked = 0;
     for (const PlotFlow& flow : plot.flows) {
         ASSERT_EQ(flow.points.size(), flow.half.size());
         EXPECT_TRUE(std::ranges::is_sorted(flow.points, {}, &glm::dvec2::x));
+        EXPECT_GE(flow.points.front().x, plot.x.range.lo) << "beside the plot";
+        EXPECT_LE(flow.points.back().x, plot.x.range.hi);
         for (std::size_t i = 0; i < flow.points.size(); ++i)
             for (std::size_t p = 0; p < places.size(); ++p)
                 if (places[p] == flow.points[i]) {
@@ -116,6 +119,30 @@ TEST_F(PiecesGraph, SaysWhatAPieceIsAndBecomes) {
     EXPECT_EQ(column("greatest z").numbers[to], graph.pieces[to].extent.hi.z);
 }
 
+TEST_F(PiecesGraph, AreDrawnOnlyWhereTheyAreTold) {
+    volume::PieceGraph many;
+    many.tracks = kMostDrawnTracks + 1;
+    EXPECT_THROW(layOutPieces(source->info(), many), Error);
+    EXPECT_THAT(tooManyPieces(many), HasSubstr("too many to draw"));
+    EXPECT_EQ(tooManyPieces(graph), "");
+}
+
+TEST_F(PiecesGraph, SaysTimesAlongTheAxisOfAPlaneThatIsTime) {
+    volume::DatasetInfo info = source->info();
+    info.plane.emplace();
+    info.plane->solved = 2;
+    info.plane->timePerLength = 0.5;
+    ASSERT_EQ(info.timeAxis(), 2);
+    const Table table = piecesTable(info, graph, question);
+    const auto column = [&](std::string_view name) {
+        return *std::ranges::find(table.columns, name, &TableColumn::name);
+    };
+    EXPECT_EQ(column("centroid t").unit, info.timeUnit);
+    EXPECT_EQ(column("centroid t").numbers[0], graph.pieces[0].centroid.z * 0.5);
+    EXPECT_EQ(column("volume").unit, info.lengthUnit + "2 " + info.timeUnit);
+    EXPECT_EQ(column("volume").numbers[0], graph.pieces[0].volume * 0.5);
+}
+
 TEST_F(PiecesGraph, SelectsExactlyTheSamplesOfAPiece) {
     const volume::DatasetInfo& info = source->info();
     Session session;
@@ -140,6 +167,8 @@ TEST_F(PiecesGraph, SelectsExactlyTheSamplesOfAPiece) {
     const BrushedQuery brushed = brushedQuery(session, derived->info(), {}, {}, 1, false);
     const volume::StatisticsQuery query = samplesQuery(brushed, derived->info(), 0);
     ASSERT_EQ(brushed.channels.size(), 1u);
+    std::get<vis::RangeRegion>(session.selection.brushes.back().region).intervals[0].lo = 0;
+    EXPECT_EQ(chosenPiece(session, info, question), 0) << "a brush of several pieces is of none alone";
     for (const volume::Piece& each : graph.pieces) {
         if (each.track != piece.track) continue;
         const volume::SampleGrid numbers = volume::readSamples(*derived, brushed.channels[0], each.time, 0);

@@ -269,6 +269,9 @@ TEST(Cloud4, PlacesSamplesInTheTesseract) {
     EXPECT_EQ(byValue[0].position.w, -0.5f);
     EXPECT_EQ(byValue[1].position.w, 0);
     EXPECT_EQ(byValue[2].position.w, 0.5f);
+    CloudStyle flat = someStyle(); // the other grid of BCC lies half a cell off
+    flat.bounds.hi.z = 0;
+    for (const CloudPoint& point : makeCloud(someSamples(), flat)) EXPECT_EQ(point.position.z, 0);
 }
 
 TEST(Cloud4, BrushesFadeWhatTheyLeaveOut) {

@@ -233,6 +233,9 @@ TEST(Pieces, OfRegionsAreNeverJoinedAndSmallOnesAreCounted) {
     for (int t = 0; t < 2; ++t)
         fields.push_back(test::sampled<float>(
             lattice, [&](glm::dvec3 p) { return bar(p) || p == glm::dvec3(1, 7, 7) ? 1.0 : 0.0; }));
+    Mask mask(lattice.count(), 1);
+    mask[0] = 0;
+    for (Field& field : fields) field.mask = std::make_shared<const Mask>(mask);
     for (int t = 0; t < 2; ++t)
         fields.push_back(test::sampled<std::uint8_t>(lattice, [](glm::dvec3 p) { return p.x < 6 ? 1 : 2; }));
     Dataset dataset = test::datasetOf(std::move(fields), 2);
@@ -257,6 +260,9 @@ TEST(Pieces, OfRegionsAreNeverJoinedAndSmallOnesAreCounted) {
     ASSERT_EQ(selected.pieces.size(), 2u);
     EXPECT_EQ(selected.pieces[0].samples, 6 * 8);
     EXPECT_EQ(selected.pieces[0].mean, 0);
+    // A brush in space takes absent samples too, which are none of a piece.
+    const PieceGraph all = findPieces(*piecesSource(dataset), {.doi = [](auto, auto) { return 1; }});
+    EXPECT_EQ(all.pieces[0].samples + all.pieces[1].samples, 12 * 8 * 8 - 1);
 }
 
 TEST(Pieces, LabelSamplesWithTheirNumbers) {

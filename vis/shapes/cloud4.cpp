@@ -72,8 +72,9 @@ std::vector<CloudPoint> makeCloud(const volume::Samples4& samples, const CloudSt
         if (std::isnan(own[0]) || std::isnan(along) || std::ranges::any_of(style.further, lacks)) continue;
         const glm::dvec3 physical(samples.positions[i]);
         const double fourth = shareOf(style.fourth, along);
-        const glm::dvec3 inBox =
-            glm::clamp((style.axes.toSheet(physical) - style.bounds.lo) / size, 0.0, 1.0) * 2.0 - 1.0;
+        glm::dvec3 inBox = glm::clamp((style.axes.toSheet(physical) - style.bounds.lo) / size, 0.0, 1.0) * 2.0 - 1.0;
+        for (int axis = 0; axis < 3; ++axis) // without extent: in the middle, whichever grid of BCC it belongs to
+            if (!(style.bounds.hi[axis] > style.bounds.lo[axis])) inBox[axis] = 0;
         CloudPoint point;
         point.position = glm::vec4(glm::dvec4(inBox, fourth * 2 - 1) * firstFour(style.half));
         for (std::size_t a = 0; a < style.further.size(); ++a) {

@@ -108,7 +108,8 @@ private:
         if (std::holds_alternative<TimeRecipe>(derived_.recipe))
             return {info_.plane ? Range{info_.plane->lo.w, info_.plane->hi.w}
                                 : Range{info_.times.front(), info_.times.back()}};
-        if (std::holds_alternative<PiecesRecipe>(derived_.recipe)) return {{0, double(std::max(1, bricks_.pieces()))}};
+        if (std::holds_alternative<PiecesRecipe>(derived_.recipe))
+            return {{0, double(std::max(1, bricks_.pieces(progress)))}};
         if (const auto* uncertainty = std::get_if<UncertaintyRecipe>(&derived_.recipe)) {
             const double bound = uncertainty->bound.value_or(0);
             return {{0, bound > 0 ? bound : 1}};

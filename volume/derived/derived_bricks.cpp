@@ -383,8 +383,8 @@ const std::shared_ptr<const BrickSource>& DerivedBricks::sourceNow() const {
 
 DerivedBricks::~DerivedBricks() = default;
 
-int DerivedBricks::pieces() const {
-    return impl_->pieces_ ? impl_->pieces_->graph()->tracks : 0;
+int DerivedBricks::pieces(const Progress& progress) const {
+    return impl_->pieces_ ? impl_->pieces_->graph(progress)->tracks : 0;
 }
 
 std::shared_ptr<const DerivedBricks::Bricks> DerivedBricks::get(BrickKey key) const {

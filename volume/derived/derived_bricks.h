@@ -31,8 +31,8 @@ public:
     /// The brick for every component; key.channel is ignored. Thread-safe.
     std::shared_ptr<const Bricks> get(BrickKey key) const;
 
-    /// The largest number that a label of pieces has; 0 of other recipes. Finds them if need be.
-    int pieces() const;
+    /// The largest number that a label of pieces has; 0 of other recipes. Finds them if need be. Throws Cancelled.
+    int pieces(const Progress& progress = {}) const;
 
     /// A change of 0 if all samples from which the brick is computed are unchanged from key.time to `toTime`, else
     /// empty.

@@ -51,9 +51,12 @@ PieceSamples samplesInside(const BrickSource& source, const PiecesQuery& query, 
             for (int x = 0; x < lattice.size.x; ++x) {
                 const glm::ivec3 at(x, y, int(z));
                 const std::size_t i = lattice.index(at);
-                for (std::size_t c = 0; c < of.size(); ++c)
+                bool there = out.grid.isPresent(i) && !std::isnan(out.grid.values[i]);
+                for (std::size_t c = 0; c < of.size(); ++c) {
                     values[c] = of[c].isPresent(i) ? of[c].values[i] : std::numeric_limits<float>::quiet_NaN();
-                out.inside[i] = query.doi(values, lattice.position(at)) >= 0.5 ? 1 : 0;
+                    there = there || !std::isnan(values[c]);
+                }
+                out.inside[i] = there && query.doi(values, lattice.position(at)) >= 0.5 ? 1 : 0;
             }
     });
     return out;

@@ -22,7 +22,8 @@ struct PiecesQuery {
     int level = 0;                     ///< of detail
     std::vector<int> doiChannels = {};
     /// Degree of interest 0..1 of a sample, given the values of `doiChannels` (NaN where absent) and its position:
-    /// where it is given, samples of at least 1/2 make the pieces, whatever their value. Called from several threads.
+    /// where it is given, samples of at least 1/2 make the pieces, whatever their value, but not those that have none
+    /// of `channel` nor of `doiChannels`. Called from several threads.
     std::function<double(std::span<const float> values, glm::dvec3 position)> doi = {};
 };
 

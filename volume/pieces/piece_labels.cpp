@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <tbb/task_arena.h>
 #include <unordered_map>
 #include <utility>
 
@@ -15,12 +16,18 @@ constexpr std::size_t kNumberBudget = std::size_t(128) << 20;
 
 PieceLabels::PieceLabels(std::shared_ptr<const BrickSource> source, PiecesQuery query)
     : source_(std::move(source)), query_(std::move(query)),
-      graphs_(
-          kNumberBudget, [this](int) { return std::make_shared<const PieceGraph>(findPieces(*source_, query_)); },
-          [](const PieceGraph& graph) { return graph.pieces.size() * sizeof(Piece); }),
       times_(
           kNumberBudget, [this](int time) { return std::make_shared<const Numbers>(numbersAt(time)); },
           [](const Numbers& of) { return of.numbers.size() * 4 + of.present.size(); }) {}
+
+std::shared_ptr<const PieceGraph> PieceLabels::graph(const Progress& progress) const {
+    const std::lock_guard lock(mutex_);
+    // Isolated: while this thread waits for parallel work it must not pick up an outer task that asks for the same.
+    if (!graph_)
+        graph_ = tbb::this_task_arena::isolate(
+            [&] { return std::make_shared<const PieceGraph>(findPieces(*source_, query_, progress)); });
+    return graph_;
+}
 
 PieceLabels::Numbers PieceLabels::numbersAt(int time) const {
     LabelledPieces labelled = labelPieces(*source_, query_, time);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 
 namespace tessera::volume {
 
@@ -19,7 +20,8 @@ public:
 
     /// `key.channel` is ignored; key.time is a stored one.
     BrickSamples brick(const BrickKey& key) const;
-    std::shared_ptr<const PieceGraph> graph() const { return graphs_.get(0); }
+    /// Found once, by the first who asks. Throws what the source throws; Cancelled, after which others may ask.
+    std::shared_ptr<const PieceGraph> graph(const Progress& progress = {}) const;
 
 private:
     struct Numbers {
@@ -31,7 +33,8 @@ private:
 
     std::shared_ptr<const BrickSource> source_;
     PiecesQuery query_;
-    mutable LoadOnce<int, PieceGraph, std::hash<int>> graphs_; ///< the one, 0
+    mutable std::mutex mutex_;
+    mutable std::shared_ptr<const PieceGraph> graph_; ///< under the mutex
     mutable LoadOnce<int, Numbers, std::hash<int>> times_;
 };
 

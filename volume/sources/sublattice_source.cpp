@@ -3,6 +3,8 @@
 #include "volume/base/error.h"
 
 #include <algorithm>
+#include <mutex>
+#include <unordered_map>
 #include <utility>
 
 namespace tessera::volume {
@@ -27,7 +29,13 @@ public:
     BrickStats stats(const BrickKey& key) const override {
         BrickKey fine = key;
         fine.level = 0;
-        return statsOfSamples(read(fine));
+        {
+            const std::lock_guard lock(statsMutex_);
+            if (const auto found = stats_.find(fine); found != stats_.end()) return found->second;
+        }
+        const BrickStats stats = statsOfSamples(read(fine)); // those stored are of both grids
+        const std::lock_guard lock(statsMutex_);
+        return stats_.try_emplace(fine, stats).first->second;
     }
     std::optional<BrickImportance> importance(const BrickKey& key) const override { return bcc_->importance(key); }
     std::optional<BrickChange> change(const BrickKey& key, int toTime) const override {
@@ -59,6 +67,8 @@ private:
     int sublattice_;
     DatasetInfo info_;
     BrickGrid grid_;
+    mutable std::mutex statsMutex_;
+    mutable std::unordered_map<BrickKey, BrickStats, BrickKeyHash> stats_;
 };
 
 } // namespace

@@ -84,7 +84,8 @@ void runPieces(const PiecesRequest& request) {
         return;
     }
     const auto drawn = [&] {
-        return fileOf(plotPage({piecesPlot(info, graph, question, {})}, 0, {}), path.substr(path.size() - 3));
+        const Plot plot = piecesPlot(info, graph, question, {}, layOutPieces(info, graph));
+        return fileOf(plotPage({plot}, 0, {}), path.substr(path.size() - 3));
     };
     writeAtomically(path, figure ? drawn() : csvOf(table));
     say("%s: %s\n", path.c_str(), piecesNote(info, graph, question).c_str());

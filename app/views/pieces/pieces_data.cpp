@@ -2,8 +2,10 @@
 
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
+#include "app/values/place_text.h"
 #include "app/values/selection_text.h"
 #include "app/views/pieces/piece_lanes.h"
+#include "volume/base/error.h"
 
 #include <algorithm>
 #include <array>
@@ -36,16 +38,6 @@ std::string pieceNumbers(const PieceGraph& graph, const std::vector<int>& pieces
     return text;
 }
 
-std::string pieceCentre(const volume::DatasetInfo& info, glm::dvec3 place) {
-    const glm::dvec3 size = info.bounds.size();
-    const LengthUnit unit = suitableLength(info.lengthUnit, std::max({size.x, size.y, size.z}));
-    std::string text;
-    for (int axis = 0; axis < 3; ++axis)
-        text += std::string(axis > 0 ? ", " : "") + char('x' + axis) + " " +
-                formatNumber(place[axis] * unit.perUnit, size[axis] * unit.perUnit / 1000);
-    return text + (unit.name.empty() ? "" : " " + prettyUnit(unit.name));
-}
-
 /// What happens to pieces, as their numbers.
 std::string eventText(const PieceGraph& graph, const PieceEvent& event) {
     switch (event.kind) {
@@ -70,17 +62,18 @@ bool concerns(const PieceGraph& graph, const PieceEvent& event, int track) {
     return std::ranges::any_of(event.from, isIt) || std::ranges::any_of(event.to, isIt);
 }
 
-/// The word of an event as files have it, for the piece to which it happens.
-std::string eventOf(const PieceGraph& graph, int piece) {
-    std::string text;
+/// The words of the events of each piece as files have them, for the piece to which they happen.
+std::vector<std::string> eventsOf(const PieceGraph& graph) {
+    std::vector<std::string> texts(graph.pieces.size());
     for (const PieceEvent& event : graph.events) {
         const bool first = event.kind == PieceEventKind::Birth || event.kind == PieceEventKind::Enter ||
                            event.kind == PieceEventKind::Merge;
         const std::vector<int>& of = first ? event.to : event.from;
-        if (of.size() == 1 && of.front() == piece)
-            text += (text.empty() ? "" : " ") + std::string(volume::kPieceEventNames[std::size_t(event.kind)]);
+        if (of.size() != 1) continue;
+        std::string& text = texts[std::size_t(of.front())];
+        text += (text.empty() ? "" : " ") + std::string(volume::kPieceEventNames[std::size_t(event.kind)]);
     }
-    return text;
+    return texts;
 }
 
 /// Half of a step of time around a stored one: lines of pieces that are there once are as long.
@@ -181,7 +174,7 @@ std::string piecesNote(const volume::DatasetInfo& info, const PieceGraph& graph,
                        counted(double(graph.events.size()), " event", " events");
     if (graph.leftOutTracks > 0)
         text += "; " + formatCount(double(graph.leftOutTracks)) + " smaller than " +
-                formatVolume(question.leastVolume, info.lengthUnit) + " left out";
+                volumeText(info, question.leastVolume) + " left out";
     if (graph.level > 0) text += "; found at level " + std::to_string(graph.level) + " of detail";
     return text;
 }
@@ -189,11 +182,11 @@ std::string piecesNote(const volume::DatasetInfo& info, const PieceGraph& graph,
 std::string pieceText(const volume::DatasetInfo& info, const PieceGraph& graph, const PiecesQuestion& question,
                       std::size_t index) {
     const Piece& piece = graph.pieces[index];
-    std::string text =
-        "piece " + std::to_string(piece.track) + " at " + timeText(info, info.times[std::size_t(piece.time)]) + ": " +
-        formatVolume(piece.volume, info.lengthUnit) + ", " + formatCount(piece.samples) +
-        (piece.samples == 1 ? " sample" : " samples") + "\nmean " + info.channel(question.channel).name + " " +
-        pieceValue(info, question.channel, piece.mean) + ", centre at " + pieceCentre(info, piece.centroid);
+    std::string text = "piece " + std::to_string(piece.track) + " at " +
+                       timeText(info, info.times[std::size_t(piece.time)]) + ": " + volumeText(info, piece.volume) +
+                       ", " + formatCount(piece.samples) + (piece.samples == 1 ? " sample" : " samples") + "\nmean " +
+                       info.channel(question.channel).name + " " + pieceValue(info, question.channel, piece.mean) +
+                       ", centre at " + pointText(info, piece.centroid, 0.001);
     for (const PieceEvent& event : graph.events)
         if (concerns(graph, event, piece.track)) {
             const bool own = event.from.size() + event.to.size() == 1;
@@ -206,7 +199,8 @@ std::string pieceText(const volume::DatasetInfo& info, const PieceGraph& graph, 
 Table piecesTable(const volume::DatasetInfo& info, const PieceGraph& graph, const PiecesQuestion& question) {
     Table table;
     const std::vector<Piece>& rows = graph.pieces;
-    const std::string length = info.lengthUnit, cube = length.empty() ? "" : length + "3";
+    const LengthUnit volumes = volumeUnit(info);
+    const bool cubes = !info.timeAxis();
     const volume::Channel channel = info.channel(question.channel);
     std::vector<std::vector<int>> from(rows.size()), to(rows.size());
     for (const volume::PieceLink& link : graph.links) {
@@ -220,27 +214,35 @@ Table piecesTable(const volume::DatasetInfo& info, const PieceGraph& graph, cons
         return text;
     };
     const auto at = [&](const Piece& piece) { return std::size_t(&piece - rows.data()); };
+    const std::vector<std::string> events = eventsOf(graph);
     addColumn(table, rows, {.name = info.timeName, .head = timeWord(info), .unit = info.timeUnit},
               [&](const Piece& piece) { return info.times[std::size_t(piece.time)]; });
     addColumn(table, rows, {.name = "piece", .head = "Piece", .kind = NumberKind::Count},
               [](const Piece& piece) { return piece.track; });
-    addColumn(table, rows, {.name = "event", .head = "Event"},
-              [&](const Piece& piece) { return eventOf(graph, int(at(piece))); });
-    addColumn(table, rows, {.name = "volume", .head = "Volume", .unit = cube, .kind = NumberKind::Volume},
-              [](const Piece& piece) { return piece.volume; });
+    addColumn(table, rows, {.name = "event", .head = "Event"}, [&](const Piece& piece) { return events[at(piece)]; });
+    addColumn(table, rows,
+              {.name = "volume",
+               .head = "Volume",
+               .unit = volumes.name,
+               .kind = cubes ? NumberKind::Volume : NumberKind::Plain},
+              [&](const Piece& piece) { return piece.volume * volumes.perUnit; });
     addColumn(table, rows, {.name = "samples", .head = "Samples", .kind = NumberKind::Count},
               [](const Piece& piece) { return piece.samples; });
     addColumn(table, rows, {.name = "mean " + channel.name, .head = "Mean " + channel.name, .unit = channel.unit},
               [](const Piece& piece) { return piece.mean; });
+    // An axis of a plane may be time; the others are in the unit of the source.
+    const auto timed = [&](int axis) { return info.timeAxis() == axis; };
+    const auto named = [&](int axis) { return timed(axis) ? timeWord(info) : std::string(1, "xyz"[axis]); };
+    const auto along = [&](int axis) { return timed(axis) ? info.timeUnit : info.lengthUnit; };
+    const auto perUnit = [&](int axis) { return timed(axis) ? info.plane->timePerLength : 1; };
     for (int axis = 0; axis < 3; ++axis)
-        addColumn(table, rows, {.name = std::string("centroid ") + char('x' + axis), .unit = length},
-                  [axis](const Piece& piece) { return piece.centroid[axis]; });
+        addColumn(table, rows, {.name = "centroid " + named(axis), .unit = along(axis)},
+                  [&](const Piece& piece) { return piece.centroid[axis] * perUnit(axis); });
     for (int axis = 0; axis < 3; ++axis) {
-        const std::string name = std::string(1, char('x' + axis));
-        addColumn(table, rows, {.name = "least " + name, .unit = length, .shown = false},
-                  [axis](const Piece& piece) { return piece.extent.lo[axis]; });
-        addColumn(table, rows, {.name = "greatest " + name, .unit = length, .shown = false},
-                  [axis](const Piece& piece) { return piece.extent.hi[axis]; });
+        addColumn(table, rows, {.name = "least " + named(axis), .unit = along(axis), .shown = false},
+                  [&](const Piece& piece) { return piece.extent.lo[axis] * perUnit(axis); });
+        addColumn(table, rows, {.name = "greatest " + named(axis), .unit = along(axis), .shown = false},
+                  [&](const Piece& piece) { return piece.extent.hi[axis] * perUnit(axis); });
     }
     addColumn(table, rows, {.name = "at the border", .kind = NumberKind::Flag, .shown = false},
               [](const Piece& piece) { return piece.atBorder ? 1 : 0; });
@@ -255,30 +257,36 @@ Table piecesTable(const volume::DatasetInfo& info, const PieceGraph& graph, cons
     return table;
 }
 
-std::vector<glm::dvec2> piecePlaces(const volume::DatasetInfo& info, const PieceGraph& graph) {
+std::string tooManyPieces(const PieceGraph& graph) {
+    if (graph.tracks <= kMostDrawnTracks) return {};
+    return formatCount(graph.tracks) +
+           " pieces are too many to draw: choose another value, or a least volume; a table " + "has all of them";
+}
+
+PiecesLayout layOutPieces(const volume::DatasetInfo& info, const PieceGraph& graph) {
+    if (const std::string reason = tooManyPieces(graph); !reason.empty()) throw Error(reason);
     const PieceLanes lanes = pieceLanes(graph);
-    std::vector<glm::dvec2> places;
+    PiecesLayout out{{}, lanes.count};
     for (const Piece& piece : graph.pieces)
-        places.emplace_back(info.times[std::size_t(piece.time)],
-                            lanes.count - 0.5 - lanes.lane[std::size_t(piece.track)]);
-    return places;
+        out.places.emplace_back(info.times[std::size_t(piece.time)],
+                                lanes.count - 0.5 - lanes.lane[std::size_t(piece.track)]);
+    return out;
 }
 
 Plot piecesPlot(const volume::DatasetInfo& info, const PieceGraph& graph, const PiecesQuestion& question,
-                const PiecesLook& look) {
+                const PiecesLook& look, const PiecesLayout& layout) {
     constexpr double kHalfLane = 0.42;
     Plot plot;
-    const PieceLanes lanes = pieceLanes(graph);
-    const std::vector<glm::dvec2> places = piecePlaces(info, graph);
+    const std::vector<glm::dvec2>& places = layout.places;
     double largest = 0;
     for (const Piece& piece : graph.pieces) largest = std::max(largest, piece.volume);
     const double span = info.times.back() - info.times.front(), margin = span > 0 ? span * 0.03 : 1;
     plot.title = "Pieces of " + piecesName(info, question);
-    plot.note = "width by volume, at most " + formatVolume(largest, info.lengthUnit);
+    plot.note = "width by volume, at most " + volumeText(info, largest);
     plot.x = {.title = timeWord(info),
               .range = {info.times.front() - margin, info.times.back() + margin},
               .unit = info.timeUnit};
-    plot.y = {.title = "", .range = {0, double(std::max(1, lanes.count))}, .numbered = false};
+    plot.y = {.title = "", .range = {0, double(std::max(1, layout.lanes))}, .numbered = false};
     plot.cursorX = look.time;
     const auto halfOf = [&](const Piece& piece) { return largest > 0 ? kHalfLane * piece.volume / largest : 0; };
     const glm::vec4 usual = look.dark ? glm::vec4(0.45f, 0.58f, 0.7f, 1) : glm::vec4(0.42f, 0.55f, 0.68f, 1),
@@ -308,8 +316,9 @@ Plot piecesPlot(const volume::DatasetInfo& info, const PieceGraph& graph, const 
     for (std::size_t p = 0; p < places.size(); ++p) {
         PlotFlow& flow = tracks[std::size_t(graph.pieces[p].track)];
         if (flow.points.size() != 1) continue;
-        const glm::dvec2 reach(quarterStep(info.times, graph.pieces[p].time), 0);
-        flow.points = {places[p] - reach, places[p] + reach};
+        const double reach = quarterStep(info.times, graph.pieces[p].time);
+        flow.points = {{std::max(places[p].x - reach, plot.x.range.lo), places[p].y},
+                       {std::min(places[p].x + reach, plot.x.range.hi), places[p].y}};
         flow.half.push_back(flow.half.front());
     }
     for (std::size_t t = 1; t < tracks.size(); ++t) plot.flows.push_back(std::move(tracks[t]));

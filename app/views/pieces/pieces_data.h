@@ -51,10 +51,19 @@ struct PiecesLook {
     int chosen = 0; ///< number of the piece that is selected; 0: none
     std::optional<double> time = {};
 };
-/// Tracks as lines over the true times, as wide as their volumes; events as dots.
+/// More tracks are no longer told apart, and take seconds to lay out.
+inline constexpr int kMostDrawnTracks = 2000;
+/// Where the pieces are in the plot, by their index, and how many lanes it has.
+struct PiecesLayout {
+    std::vector<glm::dvec2> places;
+    int lanes = 0;
+};
+/// Throws Error where there are more tracks than kMostDrawnTracks.
+PiecesLayout layOutPieces(const volume::DatasetInfo& info, const volume::PieceGraph& graph);
+/// "4 100 pieces are too many to draw: ..."; "" where they are not.
+std::string tooManyPieces(const volume::PieceGraph& graph);
+/// Tracks as lines over the true times, as wide as their volumes; events as dots. `layout` is that of the graph.
 Plot piecesPlot(const volume::DatasetInfo& info, const volume::PieceGraph& graph, const PiecesQuestion& question,
-                const PiecesLook& look);
-/// Where a piece is in that plot, by its index.
-std::vector<glm::dvec2> piecePlaces(const volume::DatasetInfo& info, const volume::PieceGraph& graph);
+                const PiecesLook& look, const PiecesLayout& layout);
 
 } // namespace tessera::app

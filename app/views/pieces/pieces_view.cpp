@@ -6,6 +6,7 @@
 #include "app/ui/ticks.h"
 #include "app/ui/time_text.h"
 #include "app/ui/widgets.h"
+#include "app/values/place_text.h"
 #include "app/views/pieces/pieces_data.h"
 #include "app/views/pieces/select_piece.h"
 #include "volume/derived/derived.h"
@@ -19,7 +20,10 @@ namespace tessera::app {
 namespace {
 
 struct PiecesCache : ViewCache {
-    AsyncQuery<PiecesQuestion, volume::PieceGraph> answers;
+    using Answers = AsyncQuery<PiecesQuestion, volume::PieceGraph>;
+    Answers answers;
+    Answers::AnswerPointer laidOut; ///< what `layout` is of
+    PiecesLayout layout;
     bool onPiece = false; ///< the mouse was pressed on a piece
 };
 
@@ -50,8 +54,10 @@ void choosePiecesValue(ToolRow& tools, const volume::DatasetInfo& info, int chan
     const std::string unit = known.unit.empty() ? "" : " " + prettyUnit(known.unit);
     std::string format = "%.5g";
     for (const char c : unit) format += c == '%' ? std::string("%%") : std::string(1, c);
-    if (numberFields("##value", &value, 1, {.format = format, .range = range, .span = range.hi - range.lo}))
+    if (numberFields("##value", &value, 1, {.format = format, .range = range, .span = range.hi - range.lo})) {
         view.value = value;
+        view.channel = known.name; // a value is one of a parameter, whatever the layers show
+    }
     if (ImGui::IsItemHovered()) tooltip("Value that samples of pieces reach; Ctrl+click to type it");
 }
 
@@ -61,7 +67,7 @@ void chooseLeast(ToolRow& tools, const volume::DatasetInfo& info, PiecesView& vi
     const glm::dvec3 size = info.bounds.size();
     const double box = size.x * size.y * size.z;
     const auto textFor = [&](double volume) {
-        return volume > 0 ? "from " + formatVolume(volume, info.lengthUnit) : std::string("of any size");
+        return volume > 0 ? "from " + volumeText(info, volume) : std::string("of any size");
     };
     ImGui::SetNextItemWidth(em() * 9);
     if (ImGui::BeginCombo("##least", textFor(view.leastVolume).c_str())) {
@@ -108,7 +114,7 @@ void drawGraph(ViewContext& context, PiecesCache& cache, const volume::PieceGrap
     const volume::DatasetInfo& info = context.numbers->info();
     PiecesLook look{.events = events, .dark = darkTheme(), .chosen = chosenPiece(context.session, info, question)};
     if (context.decoration.cursor) look.time = context.session.time;
-    Plot plot = piecesPlot(info, graph, question, look);
+    Plot plot = piecesPlot(info, graph, question, look, cache.layout);
     plot.title.clear(); // the tools say it
     const std::optional<PlotColumn> column = placePlots({plot});
     if (!column) return;
@@ -117,7 +123,7 @@ void drawGraph(ViewContext& context, PiecesCache& cache, const volume::PieceGrap
     drawPlot(draw, plot, frame, column->titled, column->left);
     drawPlotBottom(draw, plot, *column);
     if (!column->hovered || !context.takesInput()) return;
-    const std::vector<glm::dvec2> places = piecePlaces(info, graph);
+    const std::vector<glm::dvec2>& places = cache.layout.places;
     const auto under = pieceUnderMouse(graph, places, frame, reachOf(info, frame));
     const bool pressed = ImGui::IsMouseClicked(ImGuiMouseButton_Left);
     if (pressed) cache.onPiece = under.has_value();
@@ -197,7 +203,8 @@ void drawPiecesView(ViewContext& context, const std::string& pane, PiecesView& v
                         [found, data = source, time = context.session.time, events = view.events](const PageForm& form,
                                                                                                   const Progress&) {
                             return piecesPage(piecesPlot(data->info(), found->result, found->query,
-                                                         {.events = events, .dark = form.dark, .time = time}),
+                                                         {.events = events, .dark = form.dark, .time = time},
+                                                         layOutPieces(data->info(), found->result)),
                                               form);
                         },
                     .table = [found, data = source](
@@ -210,6 +217,12 @@ void drawPiecesView(ViewContext& context, const std::string& pane, PiecesView& v
                                      ? piecesNote(info, graph, asked) + "."
                                      : "No sample at any time belongs to " + piecesName(info, asked) + ".";
         return drawHint("No pieces", none.c_str());
+    }
+    if (const std::string reason = tooManyPieces(graph); !reason.empty())
+        return drawHint("Too many pieces", (reason + ".").c_str());
+    if (cache.laidOut != found) {
+        cache.layout = layOutPieces(info, graph);
+        cache.laidOut = found;
     }
     drawGraph(context, cache, graph, asked, found->level == 0 && asked == question, view.events);
 }

@@ -57,7 +57,8 @@ int chosenPiece(const Session& session, const volume::DatasetInfo& info, const P
         const auto* region = std::get_if<vis::RangeRegion>(&brush.region);
         if (!brush.enabled || brush.inverted || !region || region->intervals.size() != 1) continue;
         const vis::BrushInterval& interval = region->intervals.front();
-        if (interval.channel == label->name) return int(std::lround(0.5 * (interval.lo + interval.hi)));
+        const bool one = interval.hi >= interval.lo && interval.hi - interval.lo < 1;
+        if (interval.channel == label->name && one) return int(std::lround(0.5 * (interval.lo + interval.hi)));
     }
     return 0;
 }

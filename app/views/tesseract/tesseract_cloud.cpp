@@ -82,6 +82,7 @@ bool TesseractCloud::update(ViewContext& context, const std::string& pane, const
                             const std::vector<TesseractAxis>& axes, int channel) {
     const WantedCloud wanted = wantedCloud(context, view, axes, channel);
     const auto found = answers.get(context, "tesseract " + pane, wanted.query);
+    current = found != nullptr;
     if (!found) return style.has_value(); // none of these parameters yet: the former ones stay
     const bool pair = view.stereo.on();
     if (found != samples || style != wanted.style || pair != both) {
@@ -112,13 +113,14 @@ std::string cloudText(const TesseractCloud& cloud, const volume::DatasetInfo& in
     std::string text = formatCount(double(count)) + (count == 1 ? " point, " : " points of ");
     if (count != 1) text += formatCount(double(samples.count())) + " samples, ";
     text += formatShare(samples.share) + " of the lattice";
-    if (view.fourth.empty() && samples.timesRead < int(info.times.size()))
+    const bool ofTimes = !cloud.style || cloud.style->fourthChannel < 0;
+    if (ofTimes && samples.timesRead < int(info.times.size()))
         text += ", " + formatCount(samples.timesRead) + " of " + formatCount(double(info.times.size())) + " times";
     if (view.samples == volume::SampleLattice::D4) {
         const bool grid = info.lattice.kind == volume::LatticeKind::CC;
-        text += !view.fourth.empty() ? "; of a D4* lattice those at this time"
-                : grid               ? "; a D4* lattice: every other sample in space and time"
-                                     : "; a D4* lattice: one grid of two at each time";
+        text += !ofTimes ? "; of a D4* lattice those at this time"
+                : grid   ? "; a D4* lattice: every other sample in space and time"
+                         : "; a D4* lattice: one grid of two at each time";
     }
     return moreComing ? text + "; more are being read" : text;
 }
@@ -147,7 +149,7 @@ void drawCursorRing(ViewContext& context, const TesseractFrame& frame) {
 std::optional<std::size_t> drawReading(ViewContext& context, const TesseractCloud& cloud, const TesseractFrame& frame,
                                        int channel) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    if (cloud.points.empty()) return std::nullopt;
+    if (cloud.points.empty() || !cloud.current) return std::nullopt;
     const double half = 0.5 * std::min(frame.max.x - frame.min.x, frame.max.y - frame.min.y);
     const glm::dvec2 at((mouse.x - 0.5 * (frame.min.x + frame.max.x)) / half,
                         (0.5 * (frame.min.y + frame.max.y) - mouse.y) / half);

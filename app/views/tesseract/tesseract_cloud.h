@@ -21,7 +21,8 @@ struct TesseractCloud {
     std::optional<vis::CloudStyle> style;
     std::array<std::optional<vis::CloudView>, 2> drawn;
     std::array<vis::TextureName, 2> textures{};
-    bool both = false; ///< the points are in both clouds
+    bool both = false;    ///< the points are in both clouds
+    bool current = false; ///< the points are of the axes and the parameter that update() was given last
 
     /// Brings the points up to date. Returns false while there are none.
     bool update(ViewContext& context, const std::string& pane, const TesseractView& view,

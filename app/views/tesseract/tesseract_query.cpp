@@ -29,7 +29,7 @@ std::shared_ptr<const volume::Samples4> AsyncSamples::get(ViewContext& context, 
         },
         [](const TesseractQuery& former, const TesseractQuery& now) { return former.resembles(now); });
     if (found && (found->level == 0 || !shown || last_->level > 0)) last_ = found;
-    exact_ = last_ && last_->level == 0 && last_->query == query;
+    exact_ = found && found == last_ && last_->level == 0 && last_->query == query; // not one of former data
     if (!last_ || !last_->query.resembles(query)) return nullptr;
     return {last_, &last_->result};
 }

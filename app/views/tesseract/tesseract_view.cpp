@@ -325,7 +325,7 @@ void drawTesseractView(ViewContext& context, const std::string& pane, TesseractV
         if (sample && cache.clicked) {
             const volume::Samples4& samples = *cache.cloud.samples;
             context.session.cursor = glm::clamp(glm::dvec3(samples.positions[*sample]), info.bounds.lo, info.bounds.hi);
-            if (view.fourth.empty()) context.session.time = static_cast<double>(samples.times[*sample]);
+            if (!frame.axes[3].channel) context.session.time = static_cast<double>(samples.times[*sample]);
         }
     }
     draw.PopClipRect();
