@@ -63,6 +63,7 @@ CalloutLayout shortestLines(const std::vector<glm::vec2>& anchors, int left, int
     length[0] = 0;
     for (std::uint32_t set = 1; set < sets; ++set) {
         const int row = std::popcount(set) - 1;
+        last[set] = std::countr_zero(set); // of anchors without end, too
         for (int i = 0; i < count; ++i) {
             if (!(set >> i & 1u)) continue;
             const double own =

@@ -27,7 +27,9 @@ std::shared_ptr<const StatisticsResult> statisticsOf(ViewContext& context, const
     const volume::DatasetInfo& info = context.numbers->info();
     const auto region = samplesOfPlace(shown.place, info, context.session.cursor);
     if (!region) {
-        noteIn(shown, shown.place.normal ? "No numbers of this plane" : "No numbers of this lens");
+        noteIn(shown, !shown.place.normal ? "No numbers of this lens"
+                      : shown.place.axis  ? "No numbers of planes across an uneven axis"
+                                          : "No numbers of tilted planes");
         return nullptr;
     }
     BrushedQuery query;
@@ -48,9 +50,9 @@ std::shared_ptr<const StatisticsResult> statisticsOf(ViewContext& context, const
     return result;
 }
 
-/// The frame of a plot in a box, with axes where there is room.
-PlotFrame plotIn(const PictureBox& box, Range x, Range y, bool axes) {
-    const float left = axes ? axisRoom(AxisSide::Left, y, TitlePlace::Nowhere) : em() * 0.4f;
+/// The frame of a plot in a box, with axes where there is room. `up`: where the title of the upright axis is.
+PlotFrame plotIn(const PictureBox& box, Range x, Range y, bool axes, TitlePlace up = TitlePlace::Nowhere) {
+    const float left = axes ? axisRoom(AxisSide::Left, y, up) : em() * 0.4f;
     const float below = axes ? axisRoom(AxisSide::Bottom, x, TitlePlace::Elsewhere) : em() * 0.3f;
     return {{box.min.x + left, box.min.y + em() * 0.5f}, {box.max().x - em() * 0.8f, box.max().y - below}, x, y};
 }
@@ -70,10 +72,12 @@ std::optional<vis::Region> samplesOfPlace(const CalloutPlace& place, const volum
     if (!place.normal) return place.region;
     if (!place.axis) return std::nullopt;
     const int axis = static_cast<int>(*place.axis);
-    const double spacing = std::abs(info.lattice.spacing[axis]);
+    const bool two = info.lattice.kind == volume::LatticeKind::BCC; // grids, half a cell apart along each axis
+    const double spacing = std::abs(info.lattice.spacing[axis]) / (two ? 2 : 1);
     if (info.lattice.axes[axis] || !(spacing > 0)) return std::nullopt;
+    const int layers = info.lattice.size[axis] * (two && axis != 2 ? 2 : 1);
     vis::BoxRegion layer{.center = info.bounds.center(), .radius = info.bounds.size()};
-    const double first = info.lattice.origin[axis], last = double(std::max(info.lattice.size[axis] - 1, 0));
+    const double first = info.lattice.origin[axis], last = double(std::max(layers - 1, 0));
     layer.center[axis] = first + std::clamp(std::round((cursor[axis] - first) / spacing), 0.0, last) * spacing;
     layer.radius[axis] = spacing / 4;
     return layer;
@@ -109,7 +113,7 @@ void drawCalloutHistogram(ViewContext& context, const CalloutPart& shown) {
     for (const double count : counted.histogram.focus) heights.push_back(float(count / most * 0.95));
     const bool axes = hasAxes(shown.inner);
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const PlotFrame frame = plotIn(shown.inner, counted.histogram.range, {0, most / 0.95}, axes);
+    const PlotFrame frame = plotIn(shown.inner, counted.histogram.range, {0, most / 0.95}, axes, TitlePlace::Beside);
     if (frame.width() < 4 || frame.height() < 4) return;
     drawBars(draw, frame, heights, plotColors().bars);
     draw.AddRect(frame.min, frame.max, plotColors().frame);
@@ -117,7 +121,8 @@ void drawCalloutHistogram(ViewContext& context, const CalloutPart& shown) {
     const volume::Channel own = info.channel(*channel);
     drawAxis(draw, frame, AxisSide::Bottom, own.name, own.unit, shown.inner.min.x, shown.inner.max().x,
              {.inlineTitle = true});
-    drawAxis(draw, frame, AxisSide::Left, "", "", shown.inner.min.y, shown.inner.max().y);
+    drawAxis(draw, frame, AxisSide::Left, result->statistics.level > 0 ? "samples, estimated" : "samples", "",
+             shown.inner.min.y, shown.inner.max().y);
 }
 
 void drawCalloutProfile(ViewContext& context, const CalloutPart& shown) {

@@ -158,6 +158,12 @@ void fitSurfaces(Session& session, const volume::BrickSource& source, const Sess
         fitAll(*volume->layers, former ? former->layers.value_or(layout.layers) : layout.layers,
                volume->time.value_or(session.time));
     }
+    for (std::size_t i = 0; i < session.callouts.size(); ++i) {
+        Callout& callout = session.callouts[i];
+        if (!callout.layers) continue;
+        const bool made = i < layout.callouts.size() && layout.callouts[i].layers.has_value();
+        fitAll(*callout.layers, made ? *layout.callouts[i].layers : layout.layers, callout.time.value_or(session.time));
+    }
 }
 
 Session changeLayout(const SessionDocument& layout, const volume::BrickSource& source, const Session& shown,

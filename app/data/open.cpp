@@ -174,6 +174,11 @@ void moveTo(Session& session, History& history, const volume::DatasetInfo* from,
             move(session.time);
             for (auto& [pane, view] : session.views)
                 if (auto* const volume = std::get_if<VolumeView>(&view); volume && volume->time) move(*volume->time);
+            for (Callout& callout : session.callouts)
+                if (callout.time) move(*callout.time);
+            for (vis::Lens& lens : session.lenses)
+                for (auto* const end : {&lens.fromTime, &lens.untilTime})
+                    if (*end) move(**end);
         }
     session.data = data;
     // Drawn as stored, by cells: so brushes select, too.

@@ -59,7 +59,7 @@ std::string firstPlane(const Session& session) {
 }
 
 void renameCallouts(Session& session, CalloutOf of, const std::string& before, const std::string& now) {
-    if (before.empty()) return;
+    if (before.empty() && of != CalloutOf::Brush) return; // a name of a brush is empty while it is typed anew
     for (Callout& each : session.callouts)
         if (showsPlace(each, of, before)) each.placeholder = now;
 }

@@ -255,6 +255,26 @@ TEST_F(LayoutTest, TheLayoutOfErrorsPacksOtherData) {
     EXPECT_TRUE(says(archive, "an archive has no originals"));
 }
 
+TEST_F(LayoutTest, SurfacesInCalloutsExistInOtherData) {
+    OpenRequest request = rawRequest(raw("a.raw"));
+    request.layout = "callouts";
+    const Opened opened = open(request);
+    std::size_t surfaces = 0;
+    for (const Callout& callout : opened.document.session.callouts)
+        for (const vis::Layer& layer : callout.layers.value_or(std::vector<vis::Layer>())) {
+            const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique);
+            if (!iso) continue;
+            ++surfaces;
+            const volume::DatasetInfo& info = opened.numbers->info();
+            const auto channel = info.findChannel(iso->channel);
+            ASSERT_TRUE(channel);
+            const Range range = info.channelRange(info.channel(*channel));
+            EXPECT_GT(iso->value, range.lo);
+            EXPECT_LT(iso->value, range.hi);
+        }
+    EXPECT_EQ(surfaces, 1u);
+}
+
 // Where they were in the layout's data means nothing here.
 TEST_F(LayoutTest, LensesAndLinesLieInOtherData) {
     OpenRequest request = rawRequest(raw("a.raw"));

@@ -1,6 +1,7 @@
 #include "app/callouts/callout_layout.h"
 #include "app/callouts/callout_place.h"
 #include "app/callouts/callout_plots.h"
+#include "app/data/open.h"
 #include "app/edits/add_callout.h"
 #include "app/session/session_json.h"
 #include "app/tools/lens_list.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 
 /// Where callouts stand, what they are cut to, and how they go with their placeholders.
@@ -118,6 +120,11 @@ TEST(CalloutLayout, KeepsClearOfWhatIsTakenAndGivesWayInSmallPictures) {
     EXPECT_TRUE(placeCallouts(anchors, calloutRoom({0, 0}, {120, 90}, {}, 14)).boxes.empty());
 }
 
+TEST(CalloutLayout, EndsForAnchorsThatLieNowhere) {
+    const float far = std::numeric_limits<float>::infinity();
+    EXPECT_LE(placeCallouts({{far, 3}, {500, 300}, {far, -far}}, wideRoom()).boxes.size(), 3u);
+}
+
 /// Whether a scene draws a place: no clip cuts it away, and no lens hides all layers there.
 bool drawnAt(const vis::Scene& scene, const vis::WorldFrame& world, glm::dvec3 place) {
     return vis::kept(vis::placeClips(scene.clips, world), place) &&
@@ -217,6 +224,57 @@ TEST(CalloutNumbers, AreOfTheLayerNearestToAPlane) {
     const auto tilted = calloutPlace(session, info, {.of = CalloutOf::Plane, .placeholder = "oblique"});
     ASSERT_TRUE(tilted.has_value());
     EXPECT_FALSE(samplesOfPlace(*tilted, info, session.cursor).has_value());
+}
+
+TEST(CalloutNumbers, LayersOfBccLieHalfACellApart) {
+    volume::DatasetInfo info = cellInfo();
+    info.lattice = {.kind = volume::LatticeKind::BCC, .size = {3, 3, 8}, .spacing = {1, 1, 1}, .origin = {0, 0, 0}};
+    const Session session = defaultSession(info, {});
+    for (const int axis : {0, 1, 2})
+        for (const double cursor : {0.1, 0.4, 1.6, 9.0}) {
+            CalloutPlace place{.name = "plane"};
+            place.normal = glm::dvec3(0);
+            place.axis = static_cast<volume::SpaceAxis>(axis);
+            const auto layer = std::get<vis::BoxRegion>(*samplesOfPlace(place, info, glm::dvec3(cursor)));
+            double nearest = 1e9;
+            std::size_t inside = 0;
+            for (int z = 0; z < 8; ++z)
+                for (int i = 0; i < 3; ++i) {
+                    const double at = info.lattice.position({i, i, z})[axis];
+                    if (std::abs(at - cursor) < std::abs(nearest - cursor)) nearest = at;
+                    inside += std::abs(at - layer.center[axis]) <= layer.radius[axis];
+                }
+            EXPECT_NEAR(layer.center[axis], nearest, 1e-9) << axis << " " << cursor;
+            EXPECT_GT(inside, 0u);
+        }
+}
+
+TEST(CalloutEdits, FollowABrushWhoseNameIsTypedAnew) {
+    const volume::DatasetInfo& info = cellInfo();
+    Session session = defaultSession(info, {});
+    addCallout(session, info, CalloutOf::Brush, "hot");
+    renameCallouts(session, CalloutOf::Brush, "hot", "");
+    renameCallouts(session, CalloutOf::Brush, "", "warm");
+    EXPECT_EQ(session.callouts[0].placeholder, "warm");
+}
+
+TEST(CalloutEdits, KeepTheirTimeOnAnotherTimeAxis) {
+    volume::DatasetInfo from = cellInfo();
+    from.times = {0, 1, 2};
+    from.timeName = "time";
+    from.quantities = {{"voltage", "V", {0.8, 0.7, 0.5}}};
+    volume::DatasetInfo to = from;
+    to.times = {0.5, 0.7, 0.8};
+    to.timeName = "voltage";
+    Session session = defaultSession(from, {});
+    session.callouts = {{.of = CalloutOf::Plane, .placeholder = "z", .time = 1.0}};
+    session.lenses.push_back({.name = "late", .fromTime = 1.0});
+    History history;
+    history.reset(session);
+    std::vector<std::string> messages;
+    moveTo(session, history, &from, to, session.data, messages);
+    EXPECT_NEAR(session.callouts[0].time.value_or(0), 0.7, 1e-9);
+    EXPECT_NEAR(session.lenses[0].fromTime.value_or(0), 0.7, 1e-9);
 }
 
 TEST(CalloutEdits, ComparesParametersOfOnePlaceholderAndGoWithIt) {

@@ -36,14 +36,19 @@ CalloutsBeside::CalloutsBeside(ViewContext& context, CalloutsCache& cache, bool 
 void CalloutsBeside::place(const SpaceFrame& space, bool moving) {
     Session& session = context_.session;
     shown_.clear();
+    beyond_ = 0;
     layout_ = {};
     while (cache_.states.size() < session.callouts.size()) cache_.states.push_back(std::make_unique<CalloutState>());
     if (!wanted_) return;
     std::vector<glm::vec2> anchors;
-    for (std::size_t i = 0; i < session.callouts.size() && shown_.size() < kMostCallouts; ++i) {
+    for (std::size_t i = 0; i < session.callouts.size(); ++i) {
         if (!session.callouts[i].enabled) continue;
         auto found = calloutPlace(session, context_.source->info(), session.callouts[i]);
         if (!found) continue;
+        if (shown_.size() == kMostCallouts) {
+            ++beyond_;
+            continue;
+        }
         const auto at = space.pixel(space.world.toPhysical(found->center));
         const ImVec2 middle{picture_.min.x + picture_.size.x / 2, picture_.min.y + picture_.size.y / 2};
         Shown own{.index = i, .place = std::move(*found), .seen = at.has_value()};
@@ -199,7 +204,7 @@ void CalloutsBeside::drawBox(ImDrawList& draw, std::size_t at, const vis::Scene&
 }
 
 void CalloutsBeside::sayHidden(ImDrawList& draw) const {
-    const std::size_t hidden = shown_.size() - layout_.boxes.size();
+    const std::size_t hidden = shown_.size() + beyond_ - layout_.boxes.size();
     if (hidden == 0) return;
     const std::string text =
         std::to_string(hidden) + (hidden == 1 ? " callout has" : " callouts have") + " no room here";

@@ -61,6 +61,7 @@ private:
     PictureBox picture_;
     std::string pane_;
     std::vector<Shown> shown_;
+    std::size_t beyond_ = 0; ///< callouts beyond kMostCallouts
     CalloutLayout layout_;
 };
 
