@@ -20,6 +20,9 @@ mkdir -p "$out"
     --set '/layers=[{"name":"surface","technique":{"type":"iso","channel":"rho","value":0.5,"color":[0.85,0.6,0.3]}}]'
 "$tessera" render parallel -o "$out/parallel.png" --view parallelCoordinates --size 900x560
 "$tessera" render worlds -o "$out/worlds.png" --view hierarchy --size 900x560
+"$tessera" render callouts -o "$out/callouts.png" --view volume --size 900x560
+"$tessera" render pieces -o "$out/pieces.png" --view pieces --size 900x560
+"$tessera" render timelines -o "$out/timelines.png" --view volume --size 900x560
 "$tessera" render lic -o "$out/lic.png" --view volume --size 900x560
 "$tessera" render glyphs -o "$out/glyphs.png" --view volume --size 900x560
 "$tessera" render hyperslice -o "$out/hyperslice.png" --view hyperSlice --size 900x560

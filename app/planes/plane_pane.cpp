@@ -207,13 +207,12 @@ void choosePlaneChannel(ToolRow& tools, const volume::DatasetInfo& info, int sho
     if (ImGui::IsItemHovered()) tooltip("Parameter of the colours");
 }
 
-void chooseStrokes(ToolRow& tools, const volume::DatasetInfo& info, vis::Strokes& strokes) {
+void chooseStrokes(ViewContext& context, ToolRow& tools, const volume::DatasetInfo& info, vis::Strokes& strokes) {
     if (firstVector(info).empty()) return;
-    const std::string title = strokes.vector.empty() ? "no strokes" : "strokes of " + strokes.vector;
-    const float width = std::min(buttonWidth(title.c_str()), em() * 11);
-    if (!tools.next(width)) return;
-    if (ImGui::Button(title.c_str(), {width, 0})) ImGui::OpenPopup("strokes");
-    if (ImGui::IsItemHovered()) tooltip("Fine strokes along a vector: how it runs in the slice");
+    if (!tools.next(iconButtonWidth(context, icons::kFlow))) return;
+    if (iconButton(context, "along", icons::kFlow, "Fine strokes along a vector: how it runs in the slice", true,
+                   !strokes.vector.empty()))
+        ImGui::OpenPopup("strokes");
     if (!ImGui::BeginPopup("strokes")) return;
     ImGui::Dummy({em() * 24, 0}); // its least width
     drawDescribed(strokes, {.info = &info, .labelShare = 0.3f});

@@ -65,7 +65,7 @@ void drawPlaneLegend(const ViewContext& context, const PlanePicture& picture, co
 /// The tool that chooses the parameter of the colours.
 void choosePlaneChannel(ToolRow& tools, const volume::DatasetInfo& info, int shown, std::string& channel);
 /// The tool that chooses the vector of strokes, where the data have vectors.
-void chooseStrokes(ToolRow& tools, const volume::DatasetInfo& info, vis::Strokes& strokes);
+void chooseStrokes(ViewContext& context, ToolRow& tools, const volume::DatasetInfo& info, vis::Strokes& strokes);
 /// The tool that copies the values at the cross-hair.
 void copyReadout(ViewContext& context, ToolRow& tools, const Readout& readout);
 

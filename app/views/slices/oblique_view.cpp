@@ -57,7 +57,7 @@ void drawTools(ViewContext& context, ObliqueView& view, const Readout& readout, 
         }
     }
     chooseContours(tools, info, view.lines);
-    chooseStrokes(tools, info, view.strokes);
+    chooseStrokes(context, tools, info, view.strokes);
     if (tools.next(checkboxWidth("in 3D"))) {
         ImGui::Checkbox("in 3D", &view.inSpace);
         if (ImGui::IsItemHovered()) tooltip("Draw the slice in the volume views too");

@@ -37,7 +37,7 @@ void drawSlicesTools(ViewContext& context, SlicesView& view, const Readout& read
     ToolRow tools(context);
     choosePlaneChannel(tools, context.source->info(), shows.channel, view.channel);
     chooseContours(tools, context.source->info(), view.lines);
-    chooseStrokes(tools, context.source->info(), view.strokes);
+    chooseStrokes(context, tools, context.source->info(), view.strokes);
     const volume::DatasetInfo& info = drawnSource(context)->info();
     const ThreeSlices slices = slicesAtCursor(context.session, info, kSlicePlanes, shows);
     exportPlanes(context, tools, "slices", {slices.begin(), slices.end()}, 2, comparedChannels(info));
