@@ -141,11 +141,18 @@ void drawGraph(ViewContext& context, PiecesCache& cache, const volume::PieceGrap
     if (pressed && under) selectPiece(context.session, info, question, graph.pieces[*under], exact);
 }
 
-/// The graph on a page. On a small one, words give way to its lines: the note, then the events with their names.
-VectorPage piecesPage(Plot plot, const PageForm& form) {
+/// The graph on a page. On a small one, words give way to its lines: the note, the events with their names, then the
+/// name of the parameter in the title.
+VectorPage piecesPage(const volume::DatasetInfo& info, const volume::PieceGraph& graph, const PiecesQuestion& question,
+                      const PiecesLook& look, const PageForm& form) {
+    Plot plot = piecesPlot(info, graph, question, look, layOutPieces(info, graph));
     const auto small = [&](double lines) { return form.size.y > 0 && plotArea({plot}, 0, form).y < lines * form.text; };
     if (small(3)) plot.note.clear();
     if (form.legend && small(5)) plot.series.clear(); // their names take two lines or more
+    if (small(2))
+        plot.title = question.of == PiecesOf::Selected
+                         ? "Pieces of the selection"
+                         : "Pieces" + piecesName(info, question).substr(info.channel(question.channel).name.size());
     return plotPage({std::move(plot)}, 0, form);
 }
 
@@ -202,10 +209,8 @@ void drawPiecesView(ViewContext& context, const std::string& pane, PiecesView& v
                     .figure =
                         [found, data = source, time = context.session.time, events = view.events](const PageForm& form,
                                                                                                   const Progress&) {
-                            return piecesPage(piecesPlot(data->info(), found->result, found->query,
-                                                         {.events = events, .dark = form.dark, .time = time},
-                                                         layOutPieces(data->info(), found->result)),
-                                              form);
+                            return piecesPage(data->info(), found->result, found->query,
+                                              {.events = events, .dark = form.dark, .time = time}, form);
                         },
                     .table = [found, data = source](
                                  const Progress&) { return piecesTable(data->info(), found->result, found->query); },
