@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/callouts/callout_picture.h"
+#include "app/callouts/callout_part.h"
 
 /// Numbers in callouts: of the samples inside of a body, or of the layer of samples nearest to a plane across an axis.
 namespace tessera::app {

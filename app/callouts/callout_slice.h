@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/callouts/callout_picture.h"
+#include "app/callouts/callout_part.h"
 
 /// Slices in callouts: the plane that a callout shows, flat, or a slice through the middle of its body.
 namespace tessera::app {
