@@ -59,8 +59,8 @@ template <class Number> struct Caster {
         const glm::dvec3 color(layer.classify(own.value));
         if (layer.strokes == nullptr) return color;
         const Strokes& strokes = std::get<SliceLayer>(*layer.technique).strokes;
-        return withStrokes<double>(strokes.grey ? glm::dvec3(kStrokeGrey) : color, sliceStrokes(*layer.strokes, place).x,
-                                   double(strokes.strength));
+        return withStrokes<double>(strokes.grey ? glm::dvec3(kStrokeGrey) : color,
+                                   sliceStrokes(*layer.strokes, place).x, double(strokes.strength));
     }
 
     /// Whether a slice of strokes alone has none at a place.

@@ -1,6 +1,6 @@
 #include "vis/shapes/flow_data.h"
 
-#include "vis/shapes/flow_geometry.h"
+#include "vis/scene/geometry.h"
 #include "volume/field/time_pair.h"
 #include "volume/flow/flow_channels.h"
 #include "volume/mesh/isosurface.h"
@@ -97,7 +97,8 @@ volume::ChangingField FlowData::velocity() const {
 }
 
 int levelOf(const volume::BrickSource& source, const FlowLayer& layer) {
-    return flowLevel(source.grid(), followsParticles(layer.kind) ? int(source.info().times.size()) : 1);
+    const double times = followsParticles(layer.kind) ? double(source.info().times.size()) : 1;
+    return source.grid().levelWithin(kMostSamples / times);
 }
 
 std::optional<FlowData> readFlow(const volume::BrickSource& source, const FlowLayer& layer, double moment,
@@ -228,10 +229,6 @@ std::vector<float> valuesOver(const volume::BrickSource& source, const std::stri
         }
     }
     return out;
-}
-
-int flowLevel(const volume::BrickGrid& grid, int times) {
-    return grid.levelWithin(kMostSamples / times);
 }
 
 } // namespace tessera::vis

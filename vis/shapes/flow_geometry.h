@@ -42,9 +42,6 @@ void appendMesh(volume::SurfaceMesh& mesh, const volume::SurfaceMesh& other);
 volume::SurfaceMesh arrows(std::span<const Glyph> glyphs, glm::dvec3 stretch);
 volume::SurfaceMesh cones(std::span<const Glyph> glyphs, glm::dvec3 stretch);
 
-/// The finest level with few enough samples to keep `times` times of a vector in memory.
-int flowLevel(const volume::BrickGrid& grid, int times = 1);
-
 /// The geometry of a flow layer, coloured by its channel. Null if the data set has no such vector. `interest`: degree
 /// of interest by position, for seeding and widths by brushes; null: 1 everywhere. Throws Error, Cancelled.
 std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, const FlowLayer& layer, int time,
