@@ -31,13 +31,6 @@ Sources cutIfMet(const Sources& whole, const DataRef& data, std::vector<std::str
     return cutByPlane(whole, data);
 }
 
-std::optional<Sources> cutAgain(const Sources& shown, const DataRef& data, std::vector<std::string>& messages,
-                                const Progress& progress) {
-    if (!data.timeAxis || !shown.origin.spaceOfPlane || data.packed) return std::nullopt;
-    const Sources whole(shown.origin.spaceOfPlane, shown.origin.spaceOfPlane, shown.origin);
-    return deriveBoth(cutByPlane(whole, data), data.derived, messages, progress);
-}
-
 void tellTimeDirection(const std::vector<volume::DerivedParameter>& derived, const volume::DatasetInfo& info,
                        std::vector<std::string>& messages) {
     if (!info.timeAxis()) return;

@@ -1,8 +1,11 @@
 #pragma once
 
-#include "app/data/sources.h"
+#include "app/data/shown_sources.h"
+#include "app/session/session.h"
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace tessera::app {
 
@@ -13,11 +16,6 @@ Sources cutByPlane(const Sources& whole, const DataRef& data);
 /// The same of a session that is opened: where its plane does not meet the data they are shown as they are, which is
 /// said.
 Sources cutIfMet(const Sources& whole, const DataRef& data, std::vector<std::string>& messages);
-
-/// Another plane of the same data as the one shown, with the derived parameters of `data`: nothing is opened again.
-/// None where that cannot be done: no plane is shown or wanted, or the data are shown as an archive would hold them.
-std::optional<Sources> cutAgain(const Sources& shown, const DataRef& data, std::vector<std::string>& messages,
-                                const Progress& progress = {});
 
 /// Says of gradients, divergences and curls in such data that one of the directions is time.
 void tellTimeDirection(const std::vector<volume::DerivedParameter>& derived, const volume::DatasetInfo& info,

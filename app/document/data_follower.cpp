@@ -34,6 +34,15 @@ std::optional<PictureLattice> rememberedLattice(const std::string& stateFolder, 
     return std::nullopt;
 }
 
+/// Another plane of the same data as the one shown, with the derived parameters of `data`: nothing is opened again.
+/// None where that cannot be done: no plane is shown or wanted, or the data are shown as an archive would hold them.
+std::optional<Sources> cutAgain(const Sources& shown, const DataRef& data, std::vector<std::string>& messages,
+                                const Progress& progress) {
+    if (!data.timeAxis || !shown.origin.spaceOfPlane || data.packed) return std::nullopt;
+    const Sources whole(shown.origin.spaceOfPlane, shown.origin.spaceOfPlane, shown.origin);
+    return deriveBoth(cutByPlane(whole, data), data.derived, messages, progress);
+}
+
 } // namespace
 
 DataFollower::DataFollower(Document& document, Jobs& jobs, Messages& messages, Options options,

@@ -69,7 +69,8 @@ void expectAllWhole(const OpenRequest& request, const std::string& name) {
 
 TEST(FirstPicture, OfEveryModelAllIsSeenAndNothingHidden) {
     for (const std::string& model : volume::modelNames()) {
-        if (model == "bubbles") continue; // small balls, of which a third is their edge, in a liquid of exactly 0
+        // Small balls, of which a third is their edge, in a liquid of exactly 0; a pulse in a small part of its pipe.
+        if (model == "bubbles" || model == "branching-pulse") continue;
         OpenRequest request;
         request.data.emplace();
         request.data->model = model; // the default session, also of the model that opens with a layout
