@@ -74,7 +74,7 @@ TEST_F(SmallPanes, EachViewShowsWhatItIsAbout) {
     expectMain(profileView, drawProfileView, 0.6f, 0.3f);
     profileView.over = ProfileOver::Sections;
     expectMain(profileView, drawProfileView, 0.6f, 0.3f);
-    expectMain(sliceMatrixView, drawSliceMatrixView, 0.4f, 0.3f);
+    expectMain(sliceMatrixView, drawSliceMatrixView, 0.4f, 0.2f);
     HyperSliceView hyperSlice;
     expectMain(hyperSlice, drawHyperSliceView, 0.8f, 0.6f);
     EXPECT_THAT(drawIn({80, 60}, hyperSlice, drawHyperSliceView), HasSubstr("Not enough room"));
