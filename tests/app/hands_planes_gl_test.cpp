@@ -347,7 +347,7 @@ TEST_F(TiltedPlaneHands, InTheFlatViewALensIsDraggedByItsMiddleAlongThePlane) {
     EXPECT_NEAR(pixelOf(center).y, from.y - 16, 2);
     settle();
     EXPECT_EQ(steps(), 1u);
-    drag({from.x - 40, from.y + 14}, {from.x - 30, from.y + 14});
+    drag(within(flat, 0.25, 0.8), within(flat, 0.35, 0.8));
     EXPECT_NE(session().cursor, before.cursor) << "elsewhere the cross-hair goes along";
     EXPECT_EQ(session().lenses[0].center, center);
     // Its squares stand at the ends of its own axes; y runs upwards. The longest edge of the data is 12 mm.
