@@ -197,8 +197,7 @@ std::vector<Command> decorationCommands(Workbench& workbench) {
     const auto along = [&workbench] { return workbench.session().data.timeAxis && volumeOf(workbench); };
     commands.push_back({.menu = "",
                         .name = "Data in space",
-                        .help = "The volume view used last shows the data in space, or the plane with time along an "
-                                "axis",
+                        .help = "The volume view used last shows the data in space, or the plane in space and time",
                         .words = "time along axis plane space-time",
                         .run =
                             [&workbench, along] {
@@ -206,7 +205,7 @@ std::vector<Command> decorationCommands(Workbench& workbench) {
                             },
                         .enabled = along,
                         .checked = [&workbench, along] { return along() && volumeOf(workbench)->inSpace; },
-                        .needs = "time along an axis"});
+                        .needs = "a plane in space and time"});
     return commands;
 }
 
