@@ -1,8 +1,10 @@
 #include "vis/packet/packet_table.h"
 
+#include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/packed/packet_volume.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -53,6 +55,56 @@ TEST(PacketTables, PackedEntriesHaveColorAndExtinction) {
             }
         }
     }
+}
+
+/// Differences of the sums are the mean colour and extinction of segments between two places.
+TEST(PacketTables, SegmentSumsAreThoseOfTheIntegrals) {
+    std::mt19937 random(9);
+    std::uniform_int_distribution<int> place(0, kSegmentPlaces - 1);
+    const Range range{-3, 5};
+    for (int round = 0; round < 8; ++round) {
+        const TransferFunction function = someFunction(random);
+        const IntegralFunctions functions = integralFunctions(function, range);
+        const SegmentSums made = segmentSums(function, range);
+        ASSERT_EQ(made.sums.size(), std::size_t(kSegmentPlaces + 2) * 4);
+        int shown = 0;
+        for (int i = 0; i < 300; ++i) {
+            const int a = place(random), b = i % 3 == 0 ? std::min(a + 1, kSegmentPlaces - 1) : place(random);
+            if (a == b) continue;
+            const auto over = [&](int c) {
+                return double(made.sums[std::size_t(b * 4 + 4 + c)]) - double(made.sums[std::size_t(a * 4 + 4 + c)]);
+            };
+            const glm::dvec4 wanted =
+                preintegrated(functions, double(a) / (kSegmentPlaces - 1), double(b) / (kSegmentPlaces - 1));
+            ASSERT_NEAR(1 - std::exp2(-over(3) / (b - a) * double(made.extinction)), wanted.a, 1e-5);
+            if (wanted.a < 0.01) continue;
+            ++shown;
+            for (int c = 0; c < 3; ++c) ASSERT_NEAR(over(c) / over(3), wanted[c], 1e-3);
+        }
+        EXPECT_GT(shown, 50);
+    }
+}
+
+/// Also where a segment begins and ends at one place.
+TEST(PacketTables, SegmentSumsAroundPlacesAreTheirDensities) {
+    TransferFunction function;
+    function.opacity = {{0, 0.3f}, {0.25f, 0.1f}, {1, 0.8f}};
+    const SegmentSums made = segmentSums(function, {0, 1});
+    const IntegralFunctions functions = integralFunctions(function, {0, 1});
+    for (int i = 0; i < kSegmentPlaces; i += i == 0 ? 6 : 9) {
+        const double extinction =
+            (double(made.sums[std::size_t(i) * 4 + 11]) - double(made.sums[std::size_t(i) * 4 + 3])) / 2 *
+            double(made.extinction);
+        const double at = double(i) / (kSegmentPlaces - 1);
+        ASSERT_NEAR(1 - std::exp2(-extinction), preintegrated(functions, at, at).a, 3e-4) << i;
+    }
+}
+
+/// Without any opacity there is nothing to divide by.
+TEST(PacketTables, SegmentSumsOfNothingAreZero) {
+    TransferFunction function;
+    function.opacity = {{0, 0}, {1, 0}};
+    for (const std::int32_t sum : segmentSums(function, {0, 1}).sums) ASSERT_EQ(sum, 0);
 }
 
 /// Wherever the table has opacity, mayShow() must look: clamped places between entries, too.

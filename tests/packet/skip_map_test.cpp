@@ -79,5 +79,22 @@ TEST(SkipMaps, AreWidened) {
                 EXPECT_EQ(map.full[std::size_t((z * 4 + y) * 5 + x)], x <= 2 && y <= 1 && z >= 1) << x << y << z;
 }
 
+/// Bounds of scores are those of a block's samples, rounded up; there is none where no sample is present.
+TEST(SkipMaps, BoundScores) {
+    PacketVolume volume;
+    volume.blocks = {3, 1, 1};
+    volume.lo = {0.1f, 0.5f, 1};
+    volume.hi = {0.3f, 0.9f, -1};
+    const auto most = scoreBounds(volume, [](float sample) { return double(sample); }),
+               least = scoreBounds(volume, [](float sample) { return 1 - double(sample); });
+    ASSERT_EQ(most.size(), 6u);
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_NEAR(most[std::size_t(i)], 255 * volume.hi[std::size_t(i)], 1.1);
+        EXPECT_GT(most[std::size_t(i)], 255 * volume.hi[std::size_t(i)]);
+        EXPECT_NEAR(least[std::size_t(i)], 255 * (1 - volume.lo[std::size_t(i)]), 1.1);
+    }
+    EXPECT_EQ(most[2], 0);
+}
+
 } // namespace
 } // namespace tessera::vis::packet

@@ -111,6 +111,12 @@ inline Floats smaller(Floats a, Floats b) {
 inline Floats larger(Floats a, Floats b) {
     return Floats(raw::larger(a.v, b.v));
 }
+inline Ints smaller(Ints a, Ints b) {
+    return Ints(raw::smaller(a.v, b.v));
+}
+inline Ints larger(Ints a, Ints b) {
+    return Ints(raw::larger(a.v, b.v));
+}
 /// Of all lanes.
 inline float least(Floats a) {
     return raw::least(a.v);
@@ -173,15 +179,14 @@ template <int Scale> [[gnu::always_inline]] inline IntPair loadPairs(const void*
     raw::loadPairs<Scale>(base, index, m.v, out.low.v, out.high.v);
     return out;
 }
-/// Three times 32 bits from base + index * Scale bytes on. A fourth is read, too.
-struct IntTriple {
-    Ints each[3];
+/// Four times 32 bits from base + index * Scale bytes on.
+struct IntQuad {
+    Ints each[4];
 };
-template <int Scale>
-[[gnu::always_inline]] inline IntTriple loadTriples(const void* base, const Spread& index, Mask m) {
-    raw::I each[3];
-    raw::loadTriples<Scale>(base, index, m.v, each);
-    return {{Ints(each[0]), Ints(each[1]), Ints(each[2])}};
+template <int Scale> [[gnu::always_inline]] inline IntQuad loadQuads(const void* base, const Spread& index, Mask m) {
+    raw::I each[4];
+    raw::loadQuads<Scale>(base, index, m.v, each);
+    return {{Ints(each[0]), Ints(each[1]), Ints(each[2]), Ints(each[3])}};
 }
 /// Bit `index` (0..255) of 8 words.
 inline Mask bitAt(const std::uint32_t* words, Ints index) {

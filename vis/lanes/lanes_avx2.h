@@ -44,6 +44,12 @@ inline F smaller(F a, F b) {
 inline F larger(F a, F b) {
     return _mm256_max_ps(a, b);
 }
+inline I smaller(I a, I b) {
+    return I(_mm256_min_epi32(__m256i(a), __m256i(b)));
+}
+inline I larger(I a, I b) {
+    return I(_mm256_max_epi32(__m256i(a), __m256i(b)));
+}
 inline float least(F a) {
     const __m128 four = _mm_min_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
     const __m128 two = _mm_min_ps(four, _mm_movehl_ps(four, four));
@@ -84,8 +90,7 @@ template <int Scale>
 [[gnu::always_inline]] inline void loadPairs(const void* base, Spread index, M m, I& low, I& high) {
     gatherPairs<Scale>(base, index, m, low, high);
 }
-template <int Scale>
-[[gnu::always_inline]] inline void loadTriples(const void* base, const Spread& index, M m, I* each) {
+template <int Scale> [[gnu::always_inline]] inline void loadQuads(const void* base, const Spread& index, M m, I* each) {
     alignas(32) std::int32_t at[kLanes];
     _mm256_store_si256(reinterpret_cast<__m256i*>(at), __m256i(index & m));
     const auto two = [&](int i) __attribute__((always_inline)) { // of lanes i and i + 4
@@ -99,7 +104,9 @@ template <int Scale>
     const __m256i ab = _mm256_unpacklo_epi32(a, b), cd = _mm256_unpacklo_epi32(c, d);
     each[0] = I(_mm256_unpacklo_epi64(ab, cd));
     each[1] = I(_mm256_unpackhi_epi64(ab, cd));
-    each[2] = I(_mm256_unpacklo_epi64(_mm256_unpackhi_epi32(a, b), _mm256_unpackhi_epi32(c, d)));
+    const __m256i ab2 = _mm256_unpackhi_epi32(a, b), cd2 = _mm256_unpackhi_epi32(c, d);
+    each[2] = I(_mm256_unpacklo_epi64(ab2, cd2));
+    each[3] = I(_mm256_unpackhi_epi64(ab2, cd2));
 }
 inline M bitAt(const std::uint32_t* words, I index) {
     const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(words));

@@ -44,6 +44,12 @@ inline F smaller(F a, F b) {
 inline F larger(F a, F b) {
     return choose(a > b, a, b);
 }
+inline I smaller(I a, I b) {
+    return choose(a < b, a, b);
+}
+inline I larger(I a, I b) {
+    return choose(a > b, a, b);
+}
 inline float least(F a) {
     float out = a[0];
     for (int i = 1; i < kLanes; ++i) out = a[i] < out ? a[i] : out;
@@ -91,11 +97,11 @@ template <int Scale>
 [[gnu::always_inline]] inline void loadPairs(const void* base, Spread index, M m, I& low, I& high) {
     gatherPairs<Scale>(base, index, m, low, high);
 }
-template <int Scale> [[gnu::always_inline]] inline void loadTriples(const void* base, Spread index, M m, I* each) {
+template <int Scale> [[gnu::always_inline]] inline void loadQuads(const void* base, Spread index, M m, I* each) {
     for (int i = 0; i < kLanes; ++i) {
-        std::int32_t values[3] = {0, 0, 0};
-        if (m[i]) __builtin_memcpy(values, static_cast<const char*>(base) + std::ptrdiff_t(index[i]) * Scale, 12);
-        for (int n = 0; n < 3; ++n) each[n][i] = values[n];
+        std::int32_t values[4] = {0, 0, 0, 0};
+        if (m[i]) __builtin_memcpy(values, static_cast<const char*>(base) + std::ptrdiff_t(index[i]) * Scale, 16);
+        for (int n = 0; n < 4; ++n) each[n][i] = values[n];
     }
 }
 inline M bitAt(const std::uint32_t* words, I index) {

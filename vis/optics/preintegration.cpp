@@ -24,14 +24,6 @@ struct Nodes {
     static glm::dvec4 apart(const Sum& a, const Sum& b) { return b - a; }
 };
 
-/// Integral from 0 to a position.
-glm::dvec4 integralAt(const IntegralFunctions& functions, double x) {
-    const NodePlaceOf<double> at = nodePlace(functions.last(), x);
-    const auto below = std::size_t(at.below);
-    return functions.integral[below] +
-           integralBeyond(functions.density[below], functions.density[below + 1], at.along, functions.last());
-}
-
 } // namespace
 
 IntegralFunctions integralFunctions(const TransferFunction& function, Range range, int nodes) {
@@ -49,6 +41,13 @@ IntegralFunctions integralFunctions(const TransferFunction& function, Range rang
         out.integral.push_back(sum);
     }
     return out;
+}
+
+glm::dvec4 integralAt(const IntegralFunctions& functions, double x) {
+    const NodePlaceOf<double> at = nodePlace(functions.last(), x);
+    const auto below = std::size_t(at.below);
+    return functions.integral[below] +
+           integralBeyond(functions.density[below], functions.density[below + 1], at.along, functions.last());
 }
 
 glm::dvec4 preintegrated(const IntegralFunctions& functions, double front, double back) {

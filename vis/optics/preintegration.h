@@ -29,6 +29,8 @@ struct IntegralFunctions {
 inline constexpr int kIntegralNodes = 4096;
 /// From a function's opacity curve and colours over a range; O(nodes).
 IntegralFunctions integralFunctions(const TransferFunction& function, Range range, int nodes = kIntegralNodes);
+/// The integral from 0 to a position.
+glm::dvec4 integralAt(const IntegralFunctions& functions, double position);
 
 /// A position between two nodes, `last` the number of the last one.
 template <class N> struct NodePlaceOf { N below, along; };

@@ -4,31 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tessera::vis::packet {
 
 namespace {
-
-/// Calls visit(index) for the small blocks [first, last) of a volume.
-template <class Visit>
-void forBlocks(const PacketVolume& volume, glm::ivec3 first, glm::ivec3 last, const Visit& visit) {
-    for (int z = first.z; z < last.z; ++z)
-        for (int y = first.y; y < last.y; ++y)
-            for (int x = first.x; x < last.x; ++x)
-                visit((std::size_t(z) * std::size_t(volume.blocks.y) + std::size_t(y)) * std::size_t(volume.blocks.x) +
-                      std::size_t(x));
-}
-
-bool blockShows(const PacketVolume& volume, glm::ivec3 first, glm::ivec3 last,
-                const std::function<bool(float, float)>& shows) {
-    float lo = std::numeric_limits<float>::infinity(), hi = -lo;
-    forBlocks(volume, first, last, [&](std::size_t block) {
-        lo = std::min(lo, volume.lo[block]);
-        hi = std::max(hi, volume.hi[block]);
-    });
-    return lo <= hi && shows(lo, hi);
-}
 
 /// Edges of the cubes of equal blocks of one octant, found from those of the seven neighbours further on.
 class OctantCounts {
@@ -87,24 +66,17 @@ private:
 
 } // namespace
 
-SkipMap fullBlocks(const PacketVolume& volume, int edge, const std::function<bool(float, float)>& shows) {
+SkipMap fullBlocks(const PacketVolume& volume, const std::function<bool(float, float)>& shows) {
     SkipMap out;
-    out.edge = edge;
-    const int factor = edge / kFine;
-    out.count = (volume.blocks + factor - 1) / factor;
+    out.count = volume.blocks;
     out.full.resize(out.blocks());
     parallelRanges(
         out.blocks(),
         [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const glm::ivec3 at(int(i % std::size_t(out.count.x)),
-                                    int(i / std::size_t(out.count.x) % std::size_t(out.count.y)),
-                                    int(i / std::size_t(out.count.x) / std::size_t(out.count.y)));
-                const glm::ivec3 first = at * factor, last = glm::min(first + factor, volume.blocks);
-                out.full[i] = blockShows(volume, first, last, shows);
-            }
+            for (std::size_t i = begin; i < end; ++i)
+                out.full[i] = volume.lo[i] <= volume.hi[i] && shows(volume.lo[i], volume.hi[i]);
         },
-        1024);
+        4096);
     return out;
 }
 
@@ -114,41 +86,33 @@ SkipMap united(SkipMap a, const SkipMap& b) {
     return a;
 }
 
-std::vector<std::uint8_t> scoreBounds(const PacketVolume& volume, const SkipMap& map,
-                                      const std::function<double(float)>& score) {
-    std::vector<std::uint8_t> out(map.blocks() + 3);
-    std::size_t i = 0;
-    const int factor = map.edge / kFine;
-    for (int z = 0; z < map.count.z; ++z)
-        for (int y = 0; y < map.count.y; ++y)
-            for (int x = 0; x < map.count.x; ++x, ++i) {
-                double best = 0;
-                const glm::ivec3 first = glm::ivec3(x, y, z) * factor, last = glm::min(first + factor, volume.blocks);
-                forBlocks(volume, first, last, [&](std::size_t block) {
-                    if (!(volume.lo[block] <= volume.hi[block])) return;
-                    best = std::max({best, score(volume.lo[block]), score(volume.hi[block])});
-                });
+std::vector<std::uint8_t> scoreBounds(const PacketVolume& volume, const std::function<double(float)>& score) {
+    std::vector<std::uint8_t> out(volume.lo.size() + 3);
+    parallelRanges(
+        volume.lo.size(),
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (!(volume.lo[i] <= volume.hi[i])) continue;
+                const double best = std::max(score(volume.lo[i]), score(volume.hi[i]));
                 out[i] = std::uint8_t(std::min(255.0, std::ceil(best * 255 + 0.01)));
             }
+        },
+        4096);
     return out;
 }
 
 void widen(SkipMap& map) {
-    const auto index = [&](glm::ivec3 at) {
-        return (std::size_t(at.z) * std::size_t(map.count.y) + std::size_t(at.y)) * std::size_t(map.count.x) +
-               std::size_t(at.x);
-    };
+    std::size_t step = 1; // from one block to the next along an axis
     for (int axis = 0; axis < 3; ++axis) {
         const std::vector<std::uint8_t> before = map.full;
-        for (glm::ivec3 at(0); at.z < map.count.z; ++at.z)
-            for (at.y = 0; at.y < map.count.y; ++at.y)
-                for (at.x = 0; at.x < map.count.x; ++at.x)
-                    for (const int way : {-1, 1}) {
-                        glm::ivec3 other = at;
-                        other[axis] += way;
-                        if (other[axis] < 0 || other[axis] >= map.count[axis]) continue;
-                        map.full[index(at)] = std::uint8_t(map.full[index(at)] | before[index(other)]);
-                    }
+        const std::size_t length = step * std::size_t(map.count[axis]);
+        for (std::size_t first = 0; first < before.size(); first += length) {
+            const std::uint8_t* const from = before.data() + first;
+            std::uint8_t* const to = map.full.data() + first;
+            for (std::size_t i = step; i < length; ++i) to[i] |= from[i - step];
+            for (std::size_t i = step; i < length; ++i) to[i - step] |= from[i];
+        }
+        step = length;
     }
 }
 

@@ -15,43 +15,67 @@ inline Classified classified(const glm::vec<4, Floats>& of, Floats share) {
     return {{of.x, of.y, of.z}, of.w, share};
 }
 
-/// An IntegralView as preintegrated() wants it.
-struct Nodes {
-    const IntegralView& functions;
-    double last() const { return functions.last; }
-    glm::vec<4, Floats> density(Floats node) const { return four(functions.density, toInts(node) << 2); }
-    struct Sum {
-        glm::vec<4, Floats> whole, rest; ///< two floats for each number
-    };
-    Sum sum(Floats node) const {
-        const Ints at = toInts(node) << 3;
-        return {four(functions.integral, at), four(functions.integral + 4, at)};
-    }
-    static glm::vec<4, Floats> apart(const Sum& a, const Sum& b) { return (b.whole - a.whole) + (b.rest - a.rest); }
-
-private:
-    static glm::vec<4, Floats> four(const float* from, Ints at) {
-        const Mask all = maskOf((1u << kLanes) - 1);
-        return {gatherFloats(from, at, all), gatherFloats(from + 1, at, all), gatherFloats(from + 2, at, all),
-                gatherFloats(from + 3, at, all)};
-    }
+/// One end of a ray segment: the place of an IntegralView next to it, and the integrals up to there.
+struct SegmentEnd {
+    Ints place;
+    IntQuad sums;
 };
-inline constexpr double kSamePlace = 1e-5; ///< places closer than this count as equal
+/// Lanes that are not asked for may be anything.
+[[gnu::always_inline]] inline SegmentEnd segmentEnd(const LayerView& layer, Ints place, Mask lanes) {
+    return {place, loadQuads<16>(layer.integrals.sums, spread(place, lanes), lanes)};
+}
+/// Of samples.
+[[gnu::always_inline]] inline SegmentEnd segmentEnd(const LayerView& layer, Floats value, Mask lanes) {
+    constexpr float kLast = kSegmentPlaces - 1;
+    const Floats place = multiplyAdd(value, Floats(layer.placeScale * kLast), Floats(layer.placeOffset * kLast + 0.5f));
+    return segmentEnd(layer, toInts(clamped(place, Floats(0), Floats(kLast))), lanes);
+}
+inline SegmentEnd choose(Mask which, const SegmentEnd& a, const SegmentEnd& b) {
+    SegmentEnd out{choose(which, a.place, b.place), {}};
+    for (int i = 0; i < 4; ++i) out.sums.each[i] = choose(which, a.sums.each[i], b.sums.each[i]);
+    return out;
+}
+
+/// The mean medium from one place to another; nothing where they are the same.
+[[gnu::always_inline]] inline Medium mediumOver(const LayerView& layer, const SegmentEnd& front, const SegmentEnd& back,
+                                                Mask lanes) {
+    const Floats length = toFloats(back.place - front.place);
+    const auto over = [&](int i) { return toFloats(back.sums.each[i] - front.sums.each[i]); };
+    const Floats all = over(3), product = length * all, none(0);
+    const Floats share = choose(lanes & (product > none), Floats(1) / product, none);
+    const Floats perAll = length * share * Floats(float(kQuantum)), perLength = all * share;
+    return {{over(0) * perAll, over(1) * perAll, over(2) * perAll},
+            all * perLength * Floats(layer.integrals.extinction)};
+}
+[[gnu::noinline]] inline Medium mediumAround(const LayerView& layer, Ints place, Mask lanes) {
+    return mediumOver(layer, segmentEnd(layer, place - Ints(1), lanes), segmentEnd(layer, place + Ints(1), lanes),
+                      lanes);
+}
+/// The mean medium of segments.
+[[gnu::always_inline]] inline Medium mediumBetween(const LayerView& layer, const SegmentEnd& front,
+                                                   const SegmentEnd& back, Mask lanes) {
+    Medium out = mediumOver(layer, front, back, lanes);
+    const Mask same = lanes & (back.place == front.place);
+    if (!anyOf(same)) return out;
+    const Medium own = mediumAround(layer, back.place, same);
+    for (int c = 0; c < 3; ++c) out.color[c] = choose(same, own.color[c], out.color[c]);
+    out.extinction = choose(same, own.extinction, out.extinction);
+    return out;
+}
 
 /// Of segments that begin and end with these values of one part each.
-[[gnu::noinline]] inline Classified preintegrated(const LayerView& layer, const Found& front, const Found& back,
-                                                  Mask samePart) {
-    const auto place = [&](const Found& of) {
-        return multiplyAdd(of.value, Floats(layer.placeScale), Floats(layer.placeOffset));
+inline Classified preintegrated(const LayerView& layer, const Found& front, const SegmentEnd& first, const Found& back,
+                                const SegmentEnd& last, Mask samePart, Mask lanes) {
+    const auto of = [&](const SegmentEnd& a, const SegmentEnd& b) {
+        const Medium mean = mediumBetween(layer, a, b, lanes);
+        const Vec color = mean.color * Floats(1.0f / kQuantum);
+        return glm::vec<4, Floats>(color.x, color.y, color.z, Floats(1) - powerOfTwo(-mean.extinction));
     };
-    const Nodes nodes{layer.integrals};
-    const auto of = [&](Floats a, Floats b) {
-        return vis::preintegrated(nodes, segmentEnd(nodes, a), segmentEnd(nodes, b), kSamePlace);
-    };
-    const Floats first = place(front), last = place(back);
-    const Floats a = choose(front.present, first, last), b = choose(back.present, last, first);
+    const Mask both = front.present & back.present;
+    if (!anyOf(lanes & !(both & samePart))) return classified(of(first, last), Floats(1));
+    const SegmentEnd a = choose(front.present, first, last), b = choose(back.present, last, first);
     glm::vec<4, Floats> color = of(a, b);
-    const Mask both = front.present & back.present, apart = both & !samePart;
+    const Mask apart = both & !samePart;
     if (anyOf(apart)) {
         const glm::vec<4, Floats> halves = inHalves(of(a, a), of(b, b));
         for (int c = 0; c < 4; ++c) color[c] = choose(apart, halves[c], color[c]);

@@ -55,7 +55,7 @@ template <bool Bcc>
     const Spread place = spread(pairAt(volume, {x.first << 16, y.first << 16, z.first << 16}), lanes);
     for (int slice = 0; slice < 3; ++slice) {
         const std::int16_t* const from = volume.shorts + 2 * (offset + slice * kSlice);
-        const IntTriple low = loadTriples<4>(from, place, lanes), high = loadTriples<4>(from + 2 * kRow, place, lanes);
+        const IntQuad low = loadQuads<4>(from, place, lanes), high = loadQuads<4>(from + 2 * kRow, place, lanes);
         Floats meanXy(0), alongX(0), alongY(0);
         for (int column = 0; column < 3; ++column) {
             const auto along = [&](const PairTaps& taps) {

@@ -42,11 +42,13 @@ inline constexpr int kShowBins = 256;      ///< of its places, one bit each
 /// of exponent and 10 of mantissa; 0 is 0.
 inline constexpr int kPackedEntries = 4096, kExtinctionShift = 13, kExtinctionLeast = 127 - 20;
 
-/// IntegralFunctions of a layer: of each node density (4 numbers), and integral (4 numbers, then 4 with what rounding
-/// left of them, because differences of integrals count).
+/// Integrals of a transfer function (vis/optics/preintegration.h) from place 0 to each of kSegmentPlaces equally far
+/// apart: of t * colour and t, as whole numbers, so that their differences are exact. Ends of segments are rounded to
+/// these places.
+inline constexpr int kSegmentPlaces = 16384;
 struct IntegralView {
-    int last = 0;
-    const float *density = nullptr, *integral = nullptr;
+    const std::int32_t* sums = nullptr; ///< four of each place, also of one before the first and behind the last
+    float extinction = 0;               ///< -log2(1 - opacity) of a mean of t that is 1 from one place to the next
 };
 
 /// Another channel that colours a layer.
@@ -134,13 +136,12 @@ struct FocusView {
     float magnifies[kMaxLenses] = {}; ///< of each lens: distance from its centre within which it bends what is read
 };
 
-/// Blocks, and what leaps over them need.
+/// Blocks of kFine^3 cells, and what leaps over them need.
 struct SkipView {
     const std::uint8_t* alike = nullptr;  ///< of a SkipMap
-    const std::uint8_t* absent = nullptr; ///< of blocks of kFine^3 cells: some of their samples are absent
+    const std::uint8_t* absent = nullptr; ///< of each block: some of its samples are absent
     const std::uint8_t* bound = nullptr;  ///< of a single maximum or minimum: largest score of a block, 255 = 1
-    glm::ivec3 count{1}, fine{1};
-    int edge = 8;
+    glm::ivec3 count{1};
 };
 
 struct CastJob {

@@ -125,6 +125,12 @@ template <bool Bcc, bool Exact> struct Reader {
         }
         for (int i = 0; i < Count; ++i) found[i] = valueOf(places[i], lanes[i]);
     }
+    /// The same at any places.
+    template <int Count> [[gnu::always_inline]] void row(const Fixed* at, const Mask* lanes, Found* found) const {
+        Around places[Count];
+        for (int i = 0; i < Count; ++i) places[i] = around(at[i], lanes[i]);
+        for (int i = 0; i < Count; ++i) found[i] = valueOf(places[i], lanes[i]);
+    }
     /// The value as far as samples have any weight, see reference::Samples::continued; present where they have.
     [[gnu::noinline]] Found continued(const Vec& cells, Mask lanes) const {
         if (!masked || volume.labels) return (*this)(cells, lanes);

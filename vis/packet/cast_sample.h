@@ -5,6 +5,23 @@
 /// Samples of the layers of a scene: their gradients, colours, light and looks. Only for cast_*.cpp.
 namespace tessera::vis::packet::TESSERA_LANES {
 
+/// Between them there are samples around ends of segments.
+inline constexpr float kFirstWithin = 0.5f;
+inline float lastWithin(const VolumeView& volume, int axis) {
+    return float(volume.cells[axis]) - 1.01f;
+}
+/// Moves positions there.
+struct WithinFixed {
+    Ints first, last[3];
+    explicit WithinFixed(const VolumeView& volume) : first(toInts(Floats(kFirstWithin * (1 << 16)))) {
+        for (int axis = 0; axis < 3; ++axis) last[axis] = toInts(Floats(lastWithin(volume, axis) * (1 << 16)));
+    }
+    [[gnu::always_inline]] Fixed operator()(const Fixed& at) const {
+        const auto along = [&](Ints own, int axis) { return smaller(larger(own, first), last[axis]); };
+        return {along(at.x, 0), along(at.y, 1), along(at.z, 2)};
+    }
+};
+
 /// What all layers of a packet share, and their samples.
 template <bool Bcc, bool Exact> struct SampleCaster {
     const CastJob& job;
@@ -206,7 +223,9 @@ template <bool Bcc, bool Exact> struct SampleCaster {
                 const Floats a = read.part(front, lanes), b = read.part(back, lanes);
                 same = (a >= b) & (a <= b);
             }
-            own = preintegrated(layer, read(front, lanes), read(back, lanes), same);
+            const Found first = read(front, lanes), last = read(back, lanes);
+            own = preintegrated(layer, first, segmentEnd(layer, first.value, lanes), last,
+                                segmentEnd(layer, last.value, lanes), same, lanes);
         }
         const Mask hit = lanes & (own.opacity > Floats(0)) & (own.share > Floats(0));
         if (anyOf(hit)) drawClassified(layer, masked, own.color, own.opacity, own.share, k, hit);
@@ -215,7 +234,7 @@ template <bool Bcc, bool Exact> struct SampleCaster {
     static Vec withinVolume(const VolumeView& volume, const Vec& cells) {
         Vec out;
         for (int axis = 0; axis < 3; ++axis)
-            out[axis] = clamped(cells[axis], Floats(0.5), Floats(float(volume.cells[axis]) - 1.01f));
+            out[axis] = clamped(cells[axis], Floats(kFirstWithin), Floats(lastWithin(volume, axis)));
         return out;
     }
 

@@ -34,31 +34,39 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         read.template row<Count>(at, advance, lanes, found);
     }
 
-    /// A composite layer without light, brushes, lenses and holes.
-    void castUnshaded() {
+    /// A composite layer without light, brushes, lenses and holes. `Over`: its segments are classified over
+    /// interpolation, all of its samples are present.
+    template <bool Over> void castUnshaded() {
         Floats k(0);
         for (int i = 0; i < packet.eventCount; ++i) {
             const Floats at = smaller(packet.events[i].at, Floats(kFar / 2));
-            k = marchUnshaded(k, clamped(roundUp(at), Floats(0), packet.count));
+            k = marchUnshaded<Over>(k, clamped(roundUp(at), Floats(0), packet.count));
             packet.showEvents(at, packet.meets & packet.seeThrough());
         }
-        marchUnshaded(k, packet.count);
+        marchUnshaded<Over>(k, packet.count);
     }
     /// Takes its samples from k on, those before `samples`, and returns the next. The sum of colours is in kQuantum
     /// until the end.
-    Floats marchUnshaded(Floats k, Floats samples) {
+    template <bool Over> Floats marchUnshaded(Floats k, Floats samples) {
         constexpr float kLast = kPackedEntries - 1;
         const Floats length = packet.step * Floats(layer.density), perEntry(layer.placeScale * kLast),
                      firstEntry(layer.placeOffset * kLast + 0.5f);
         Vec color = packet.color * Floats(float(kQuantum));
         Floats opacity = packet.opacity, pick = packet.pick;
+        Floats last(-2); // the sample whose segment ends at `front`
+        SegmentEnd front{Ints(0), {Ints(0), Ints(0), Ints(0), Ints(0)}};
+        const WithinFixed within(*layer.volume);
         Mask live = packet.meets & (k < samples) & (opacity < Floats(kOpaque));
         while (anyOf(live)) {
             const Skip::Look look = skip(k, live);
             Mask full = look.full;
             if (!anyOf(full)) continue;
-            const Read read = reader(layer, someAbsent(job, packet, k, full));
-            Fixed at = fixedOf(packet.cells(k));
+            const Read read = reader(layer, !Over && someAbsent(job, packet, k, full));
+            if constexpr (Over) {
+                const Mask leapt = full & (k > last + Floats(1));
+                if (anyOf(leapt)) front = choose(leapt, endAt(read, k - Floats(0.5), leapt).at, front);
+            }
+            Fixed at = fixedOf(packet.cells(Over ? k + Floats(0.5) : k));
             for (int n = 0; n < look.run; n += kAhead) {
                 Mask lanes[kAhead];
                 Found found[kAhead];
@@ -66,16 +74,33 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
                     lanes[i] = full & (k + Floats(i) < samples);
                     count(lanes[i]);
                 }
-                read.template row<kAhead>(at, advance, lanes, found);
+                if constexpr (Over) {
+                    Fixed ends[kAhead];
+                    for (Fixed& end : ends) {
+                        end = within(at);
+                        at += advance;
+                    }
+                    read.template row<kAhead>(ends, lanes, found);
+                } else {
+                    read.template row<kAhead>(at, advance, lanes, found);
+                }
                 for (int i = 0; i < kAhead; ++i) {
-                    const Floats entry = multiplyAdd(found[i].value, perEntry, firstEntry);
-                    const Medium medium = mediumAt(layer, entry, found[i].present);
+                    Medium medium;
+                    if constexpr (Over) {
+                        const SegmentEnd back = segmentEnd(layer, found[i].value, lanes[i]);
+                        medium = mediumBetween(layer, front, back, lanes[i]);
+                        front = back;
+                    } else {
+                        const Floats entry = multiplyAdd(found[i].value, perEntry, firstEntry);
+                        medium = mediumAt(layer, entry, found[i].present);
+                    }
                     const Floats alpha = correctedOpacityOf(medium.extinction, length, Floats(1));
                     const Floats weight = choose(opacity < Floats(kOpaque), (Floats(1) - opacity) * alpha, Floats(0));
                     for (int c = 0; c < 3; ++c) color[c] = multiplyAdd(medium.color[c], weight, color[c]);
                     opacity += weight;
                     pick = choose((pick <= Floats(kNoPick)) & (opacity > Floats(kPickOpacity)), k + Floats(i), pick);
                 }
+                last = choose(full, k + Floats(kAhead - 1), last);
                 k = choose(full, k + Floats(kAhead), k);
                 full &= (k < samples) & (opacity < Floats(kOpaque));
                 if (!anyOf(full)) break;
@@ -140,26 +165,17 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
     /// The end of segments, which is where the next ones begin.
     struct End {
         Found found{Floats(0), maskOf(0)};
-        SegmentEnd<Floats, Nodes> integral = {};
+        SegmentEnd at = {};
     };
     End endAt(const Read& read, Floats k, Mask lanes) {
         count(lanes);
         const Found found = read(this->endOf(layer, k), lanes);
-        return {found, segmentEnd(Nodes{layer.integrals}, placeOf(found.value))};
+        return {found, segmentEnd(layer, found.value, lanes)};
     }
-    [[gnu::noinline]] static void replace(End& end, const End& by, Mask lanes) {
-        const auto vec = [&](glm::vec<4, Floats>& own, const glm::vec<4, Floats>& other) {
-            for (int c = 0; c < 4; ++c) own[c] = choose(lanes, other[c], own[c]);
-        };
-        end.found = {choose(lanes, by.found.value, end.found.value),
-                     (end.found.present & !lanes) | (by.found.present & lanes)};
-        end.integral.position = choose(lanes, by.integral.position, end.integral.position);
-        end.integral.at = {choose(lanes, by.integral.at.below, end.integral.at.below),
-                           choose(lanes, by.integral.at.along, end.integral.at.along)};
-        vec(end.integral.density, by.integral.density);
-        vec(end.integral.next, by.integral.next);
-        vec(end.integral.sum.whole, by.integral.sum.whole);
-        vec(end.integral.sum.rest, by.integral.sum.rest);
+    static void replace(End& end, const End& by, Mask lanes) {
+        end = {
+            {choose(lanes, by.found.value, end.found.value), (end.found.present & !lanes) | (by.found.present & lanes)},
+            choose(lanes, by.at, end.at)};
     }
 
     /// A composite layer classified over interpolation.
@@ -177,7 +193,7 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
             if (anyOf(leapt)) replace(front, endAt(read, k - Floats(0.5), leapt), leapt);
             for (int n = 0; n < look.run && anyOf(open); ++n) {
                 const End back = endAt(read, k + Floats(0.5), open);
-                const Classified own = between(front, back, open);
+                const Classified own = preintegrated(layer, front.found, front.at, back.found, back.at, open, open);
                 const Mask hit = open & (own.opacity > Floats(0)) & (own.share > Floats(0));
                 if (anyOf(hit)) this->drawClassified(layer, masked, own.color, own.opacity, own.share, k, hit);
                 replace(front, back, open);
@@ -188,13 +204,6 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
             live &= (k < packet.count) & packet.seeThrough();
         }
     }
-    /// Colours and opacities of segments.
-    Classified between(const End& front, const End& back, Mask lanes) const {
-        if (anyOf(lanes & !(front.found.present & back.found.present)))
-            return preintegrated(layer, front.found, back.found, lanes);
-        const Nodes nodes{layer.integrals};
-        return classified(vis::preintegrated(nodes, front.integral, back.integral, kSamePlace), Floats(1));
-    }
 
     /// A maximum or minimum without brushes and lenses: blocks that cannot exceed what a ray has found are passed over.
     void castExtremum() {
@@ -204,12 +213,12 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         const Floats sign(least ? -1 : 1);
         Floats best(-1e30), bestAt(0);
         if (job.skip.bound != nullptr)
-            for (Floats k(kSeed / 2); anyOf(packet.meets & (k < packet.count)); k += Floats(kSeed))
-                takeExtremum<1>(sign, k, packet.meets & (k < packet.count), best, bestAt);
+            for (Floats k(kSeed / 2); anyOf(packet.meets & (k < packet.count)); k += Floats(kSeed * kAhead))
+                takeExtremum<kAhead, kSeed>(sign, k, packet.meets, best, bestAt);
         Floats k(0);
         Mask live = packet.meets;
         const int most = job.stepVoxels > 1 ? 1 : kTogether;
-        const Blocks blocks(packet, job.skip.edge, job.skip.count);
+        const Blocks blocks(packet, job.skip.count);
         while (anyOf(live)) {
             Mask useful = live;
             if (job.skip.bound != nullptr) {
@@ -244,18 +253,27 @@ template <bool Bcc, bool Exact> struct SingleCaster : Caster<Bcc, Exact> {
         return layer.style == RayStyle::Minimum ? Floats(1) - x : x;
     }
 
-    /// Takes samples from k on.
-    template <int Count> void takeExtremum(Floats sign, Floats k, Mask lanes, Floats& best, Floats& bestAt) {
-        const Read read = reader(layer, someAbsent(job, packet, k, lanes));
+    /// Takes samples from k on, every `Apart`.
+    template <int Count, int Apart = 1>
+    void takeExtremum(Floats sign, Floats k, Mask rays, Floats& best, Floats& bestAt) {
+        const auto sample = [&](int i) { return k + Floats(i * Apart); };
+        Mask lanes[Count];
+        for (int i = 0; i < Count; ++i) {
+            lanes[i] = rays & (sample(i) < packet.count);
+            count(lanes[i]);
+        }
+        bool masked = false;
+        for (int i = 0; i<Count; i += Apart> 1 ? 1 : Count) masked |= someAbsent(job, packet, sample(i), lanes[i]);
+        const Read read = reader(layer, masked);
         Fixed at = fixedOf(packet.cells(k));
         Found found[Count];
-        readAhead<Count>(read, at, k, lanes, found);
+        read.template row<Count>(at, Apart == 1 ? advance : fixedOf(packet.advance * Floats(Apart)), lanes, found);
         for (int i = 0; i < Count; ++i) {
             const Floats value = found[i].value * sign;
             Mask better = found[i].present & (value > best);
-            if (packet.holeCount > 0) better &= packet.shows(k + Floats(i));
+            if (packet.holeCount > 0) better &= packet.shows(sample(i));
             best = choose(better, value, best);
-            bestAt = choose(better, k + Floats(i), bestAt);
+            bestAt = choose(better, sample(i), bestAt);
         }
     }
 
@@ -325,13 +343,18 @@ template <bool Bcc, bool Exact> void castLayersOf(SingleCaster<Bcc, Exact>& cast
                      layer.volume->partCount == 0 && !caster.packet.bends;
     const bool post = layer.classification == Classification::Post;
     const bool plain = !job.focus.any;
-    if (one && layer.style == RayStyle::Composite && layer.classification == Classification::PreIntegrated)
+    const bool unshaded = layer.style == RayStyle::Composite && plain && !layer.shaded && !layer.look &&
+                          !layer.byRegions && !job.light.volume && caster.packet.holeCount == 0 &&
+                          layer.colors.volume == nullptr;
+    const bool over = layer.classification == Classification::PreIntegrated;
+    if (one && unshaded && over && layer.volume->present == nullptr)
+        caster.template castUnshaded<true>();
+    else if (one && layer.style == RayStyle::Composite && over)
         caster.castSegments();
     else if (!one || !post)
         caster.castLayers();
-    else if (layer.style == RayStyle::Composite && plain && !layer.shaded && !layer.look && !layer.byRegions &&
-             !job.light.volume && caster.packet.holeCount == 0 && layer.colors.volume == nullptr)
-        caster.castUnshaded();
+    else if (unshaded)
+        caster.template castUnshaded<false>();
     else if (layer.style == RayStyle::Composite)
         caster.castComposite();
     else if (layer.style == RayStyle::Iso)

@@ -20,9 +20,8 @@ inline Ints blockIndex(const Vec& block, Floats wide, Floats high) {
 /// The blocks along the rays of a packet, with all that a leap needs.
 class Blocks {
 public:
-    /// Blocks of `edge`^3 cells (1 / edge exact).
-    Blocks(const Packet& packet, int edge, const glm::ivec3& count) : wide_(count.x), high_(count.y) {
-        const Floats perEdge(1.0f / float(edge));
+    Blocks(const Packet& packet, const glm::ivec3& count) : wide_(count.x), high_(count.y) {
+        const Floats perEdge(1.0f / kFine);
         for (int axis = 0; axis < 3; ++axis) {
             first_[axis] = packet.first[axis] * perEdge;
             advance_[axis] = packet.advance[axis] * perEdge;
@@ -77,7 +76,7 @@ inline constexpr int kLeaps = 8;
 class Skip {
 public:
     Skip(const CastJob& job, const Packet& packet)
-        : job_(job), packet_(packet), blocks_(packet, job.skip.edge, job.skip.count),
+        : job_(job), packet_(packet), blocks_(packet, job.skip.count),
           octant_(blocks_.octant(job.skip.count.x * job.skip.count.y * job.skip.count.z)) {}
 
     struct Look {
@@ -124,7 +123,7 @@ private:
 inline bool someAbsent(const CastJob& job, const Packet& packet, Floats k, Mask live) {
     if (job.skip.absent == nullptr) return false;
     const Vec at = packet.cells(k) * Floats(1.0f / kFine), block(roundDown(at.x), roundDown(at.y), roundDown(at.z));
-    const Ints index = blockIndex(block, Floats(job.skip.fine.x), Floats(job.skip.fine.y));
+    const Ints index = blockIndex(block, Floats(job.skip.count.x), Floats(job.skip.count.y));
     return anyOf(live & (Ints(0) < byteAt(job.skip.absent, index, live)));
 }
 

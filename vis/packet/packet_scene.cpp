@@ -1,6 +1,5 @@
 #include "vis/packet/packet_scene.h"
 
-#include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/packed/packed_box.h"
 #include "vis/packet/packet_table.h"
@@ -96,15 +95,8 @@ const std::int32_t* PacketScene::keep(std::vector<std::int32_t> entries) {
 }
 
 IntegralView PacketScene::integralsOf(const TransferFunction& function, Range range) {
-    const IntegralFunctions functions = integralFunctions(function, range);
-    std::vector<float>&density = integrals_.emplace_back(), &integral = integrals_.emplace_back();
-    for (const glm::dvec4& each : functions.density)
-        for (int c = 0; c < 4; ++c) density.push_back(float(each[c]));
-    for (const glm::dvec4& each : functions.integral) {
-        for (int c = 0; c < 4; ++c) integral.push_back(float(each[c]));
-        for (int c = 0; c < 4; ++c) integral.push_back(float(each[c] - double(float(each[c]))));
-    }
-    return {int(functions.last()), density.data(), integral.data()};
+    SegmentSums made = segmentSums(function, range);
+    return {keep(std::move(made.sums)) + 4, made.extinction};
 }
 
 /// `index` of a volume: that of the colouring channel.
@@ -154,6 +146,7 @@ void PacketScene::addLayer(const DrawnLayer& drawn, std::size_t index) {
     LayerView out = viewOfLayer(drawn, places, index);
     out.opacityScale = table.opacityScale;
     out.table = keep(table.entries);
+    const bool segments = drawn.classification == Classification::PreIntegrated;
     packed_.push_back(packedTable(function, alone && width == 0 ? Range{0, 1} : range));
     out.packed = packed_.back().data();
     markShown(table, out);
@@ -161,7 +154,7 @@ void PacketScene::addLayer(const DrawnLayer& drawn, std::size_t index) {
     out.byRegions = regions;
     out.toRange = toRange;
     out.classification = drawn.classification;
-    if (out.classification == Classification::PreIntegrated) out.integrals = integralsOf(function, range);
+    if (segments) out.integrals = integralsOf(function, range);
     const double perRange = width != 0 && !volume.labels ? std::abs(volume.scale / width) : 0;
     out.gradient = drawn.gradient;
     out.gradientScale = float(perRange / double(function.gradientTop));
@@ -173,7 +166,6 @@ void PacketScene::addLayer(const DrawnLayer& drawn, std::size_t index) {
         out.smooth = float(volume::smoothReach(kind, double(drawn.look->smooth)));
     }
     const glm::dvec2 map(out.placeScale, out.placeOffset);
-    const int edge = skip_.edge;
     const double slack = volume.exact ? kSlack / 2 / kQuantum : kSlack;
     std::function<bool(float, float)> shows = [](float, float) { return true; };
     const OpacityRanges opaque(table.opacity, map);
@@ -196,8 +188,8 @@ void PacketScene::addLayer(const DrawnLayer& drawn, std::size_t index) {
             };
     }
     layers_.push_back(out);
-    SkipMap full = fullBlocks(volume, edge, shows);
-    if (out.classification == Classification::PreIntegrated) widen(full); // half a step around samples counts
+    SkipMap full = fullBlocks(volume, shows);
+    if (segments) widen(full); // half a step around samples counts
     skip_ = united(std::move(skip_), full);
 }
 
@@ -254,10 +246,6 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
     }
     lenses_ = drawn.lenses;
     addBrushes(scene, info, drawn.brushed);
-    // Small blocks pay where rays soon end at surfaces.
-    const bool surfaces =
-        std::ranges::all_of(drawn.layers, [](const DrawnLayer& layer) { return !layer.volume || layer.shaded; });
-    skip_.edge = surfaces ? kFine : 2 * kFine;
     std::vector<const PacketVolume*> sampled; // along rays
     std::size_t next = 0;                     // volume
     for (const DrawnLayer& layer : drawn.layers) {
@@ -270,7 +258,7 @@ PacketScene::PacketScene(const Scene& scene, const volume::DatasetInfo& info, st
         next += layer.colors ? 2 : 1;
     }
     if (layers_.size() == 1 && (layers_[0].style == RayStyle::Maximum || layers_[0].style == RayStyle::Minimum))
-        bound_ = scoreBounds(*sampled[0], skip_, [&](float sample) {
+        bound_ = scoreBounds(*sampled[0], [&](float sample) {
             const LayerView& layer = layers_[0];
             const double at = double(sample) * double(layer.placeScale) + double(layer.placeOffset);
             const double place = std::clamp(at, 0.0, 1.0);
@@ -369,9 +357,7 @@ CastJob PacketScene::job(const Scene& scene, const volume::DatasetInfo& info, co
     countAlike(skip_, octantsOf(job));
     job.skip.alike = skip_.alike.data();
     job.skip.count = skip_.count;
-    job.skip.edge = skip_.edge;
     job.skip.absent = absent_.empty() ? nullptr : absent_.data();
-    job.skip.fine = volumes_[0]->blocks;
     if (!bound_.empty()) job.skip.bound = bound_.data();
     return job;
 }

@@ -47,7 +47,6 @@ private:
     std::vector<std::vector<VolumeView>> partViews_; ///< of each volume
     std::deque<Look> looks_;                         ///< of layers
     std::deque<std::vector<TransferRegion>> regions_;
-    std::deque<std::vector<float>> integrals_;
     std::vector<std::vector<std::int32_t>> tables_;
     std::vector<std::vector<std::uint32_t>> packed_;
     std::vector<LayerView> layers_;

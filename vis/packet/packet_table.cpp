@@ -1,11 +1,13 @@
 #include "vis/packet/packet_table.h"
 
+#include "vis/optics/preintegration.h"
 #include "vis/optics/ray_setup.h"
 #include "vis/packed/packet_volume.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 namespace tessera::vis::packet {
 
@@ -68,6 +70,24 @@ std::vector<std::uint32_t> packedTable(const TransferFunction& function, Range r
         out.push_back(quantum(color.x) | quantum(color.y) << 16);
         out.push_back(quantum(color.z) | shortened << 16);
     }
+    return out;
+}
+
+SegmentSums segmentSums(const TransferFunction& function, Range range) {
+    const IntegralFunctions functions = integralFunctions(function, range);
+    constexpr int kLast = kSegmentPlaces - 1;
+    std::vector<glm::dvec4> integrals(kSegmentPlaces + 2);
+    for (int i = 0; i <= kLast; ++i) integrals[std::size_t(i) + 1] = integralAt(functions, double(i) / kLast);
+    integrals[0] = integrals[2] - functions.density.front() * (2.0 / kLast);
+    integrals[kLast + 2] = integrals[kLast] + functions.density.back() * (2.0 / kLast);
+    double most = 0; // t * colour is at most t
+    for (const glm::dvec4& integral : integrals) most = std::max(most, std::abs(integral.w));
+    constexpr double kUnits = 2147483000;
+    const double perUnit = most > 0 ? kUnits / most : 0;
+    SegmentSums out;
+    out.extinction = float(most / kUnits * kLast * std::numbers::log2e);
+    for (const glm::dvec4& integral : integrals)
+        for (int c = 0; c < 4; ++c) out.sums.push_back(std::int32_t(std::lround(integral[c] * perUnit)));
     return out;
 }
 

@@ -22,6 +22,13 @@ Table makeTable(const TransferFunction& function, Range range, std::optional<Ran
 /// LayerView::packed.
 std::vector<std::uint32_t> packedTable(const TransferFunction& function, Range range);
 
+/// An IntegralView. Half the difference of the sums before and behind a place is the density there, also at the ends.
+struct SegmentSums {
+    std::vector<std::int32_t> sums; ///< from those before the first place on
+    float extinction = 0;
+};
+SegmentSums segmentSums(const TransferFunction& function, Range range);
+
 /// Sets LayerView::shows.
 void markShown(const Table& table, LayerView& layer);
 
