@@ -33,22 +33,14 @@ Tap between(double index) {
     return tap;
 }
 
-/// A tap in a box that begins at `begin`.
-Tap within(Tap tap, int begin) {
-    tap.first -= begin;
-    tap.nearest -= begin;
-    for (int& cell : tap.cell) cell -= begin;
-    return tap;
-}
-
 /// Sum over the samples of the nearest one's part, with beyond(index, own) in place of others.
 template <class Beyond>
 double ownSum(const SampledBox& grid, const std::vector<float>& values, const std::array<const Tap*, 3>& taps,
               const Beyond& beyond) {
     Lattice box;
     box.size = grid.box.size();
-    const Tap x = within(*taps[0], grid.box.begin.x), y = within(*taps[1], grid.box.begin.y),
-              z = within(*taps[2], grid.box.begin.z);
+    const Tap x = countedFrom(*taps[0], grid.box.begin.x), y = countedFrom(*taps[1], grid.box.begin.y),
+              z = countedFrom(*taps[2], grid.box.begin.z);
     return ofOwnPart(box, grid.numbers, {&x, &y, &z}, values, beyond);
 }
 

@@ -77,13 +77,13 @@ std::shared_ptr<const Mask> makeMask(const CellGrid& g, bool fuel, bool air) {
 }
 
 /// Position of a sample of the requested grid between two solved ones, along one axis.
-struct Between {
+struct Blend {
     int lo = 0, hi = 0;
     double weight = 0; ///< of `hi`
 };
 
-std::vector<Between> between(int shown, int solved) {
-    std::vector<Between> result;
+std::vector<Blend> between(int shown, int solved) {
+    std::vector<Blend> result;
     for (int i = 0; i < shown; ++i) {
         const double at = std::clamp((i + 0.5) * solved / shown - 0.5, 0.0, double(solved - 1));
         const int lo = std::min(int(at), std::max(solved - 2, 0));
@@ -93,8 +93,8 @@ std::vector<Between> between(int shown, int solved) {
 }
 
 /// The same for rows, by their middles (m, rising).
-std::vector<Between> between(const std::vector<double>& shown, const std::vector<double>& solved) {
-    std::vector<Between> result;
+std::vector<Blend> between(const std::vector<double>& shown, const std::vector<double>& solved) {
+    std::vector<Blend> result;
     const int last = int(solved.size()) - 1;
     for (const double at : shown) {
         const auto above = std::ranges::upper_bound(solved, at) - solved.begin();
@@ -121,7 +121,7 @@ template <class Inside> std::vector<Stencil> crossSection(const Solution& s, int
         for (int x = 0; x < s.shown.nx; ++x) {
             Stencil& stencil = stencils.emplace_back();
             if (!inside(s.shown.region(x, y))) continue;
-            const Between &bx = xs[std::size_t(x)], &by = ys[std::size_t(y)];
+            const Blend &bx = xs[std::size_t(x)], &by = ys[std::size_t(y)];
             const auto cell = [&](int cx, int cy) { return std::size_t(cx + s.grid.nx * (cy - yBegin)); };
             double sum = 0;
             for (std::size_t corner = 0; corner < 4; ++corner) {
