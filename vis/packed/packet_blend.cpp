@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    template <class T> void blend(const std::vector<T>& from, const std::vector<T>& to, std::vector<T>& out) {
+    template <class Samples> void blend(const Samples& from, const Samples& to, Samples& out) {
         out.resize(from.size());
         if (!whole_) out_.present.resize(from.size());
         parallelFor((from.size() + kInOneGo - 1) / kInOneGo, [&](std::size_t part) {
