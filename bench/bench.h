@@ -42,6 +42,9 @@ BenchTable benchThesisFrames();
 /// CPU milliseconds of all threads per frame at 512x512 beside VTK's mappers where they are at hand, with geometric
 /// means over the volumes. `volume`: only those whose name contains it.
 BenchTable benchRender(const std::string& volume);
+/// CPU milliseconds of refined pictures by the processor: rays where they are needed beside all rays everywhere, and
+/// the likeness of both pictures. `volume` as above.
+BenchTable benchRefined(const std::string& volume);
 /// Milliseconds per frame of the fuel cell's temperature in each look, beside plain compositing.
 BenchTable benchStyles();
 /// Milliseconds until every view shows what is dragged, on a fuel cell of 64x64x256 volumes, and the share of each.
