@@ -159,6 +159,12 @@ void spreadOdd(PacketVolume& volume) {
     spread(volume.hi, volume.blocks, 1, 0, kGreater);
 }
 
+/// A cubic kernel reads a sample more on every side.
+void spreadCubic(PacketVolume& volume) {
+    spread(volume.lo, volume.blocks, 1, 1, kLesser);
+    spread(volume.hi, volume.blocks, 1, 1, kGreater);
+}
+
 /// A block with an absent sample in a neighbour counts as having one: gradients read there, and so do the few samples
 /// that are taken before blocks are looked up again.
 void spreadAbsent(PacketVolume& volume) {
@@ -209,7 +215,8 @@ public:
         : source_(source), what_(what), stop_(std::move(stop)), geometry_(volume::levelGeometry(source.grid(), 0)) {
         const volume::DatasetInfo& info = source.info();
         shape_.labels = info.parameters[std::size_t(info.channel(what.channel).parameter)].categorical;
-        filtered_ = what.filter == Filter::AverageQuasi && !shape_.labels;
+        prefilter_ = shape_.labels ? volume::Prefilter::None : prefilterOf(what.filter);
+        shape_.cubic = prefilter_ == volume::Prefilter::Cubic;
         const volume::Lattice& lattice = source.grid().lattice;
         shape_.bcc = lattice.kind == volume::LatticeKind::BCC;
         shape_.exact = what.exact;
@@ -228,7 +235,7 @@ public:
     /// Filtered samples leave the range of the data, by up to 2/3 of its width but seldom by much, and 15 bits are few:
     /// so shorts have the range of the filtered ones.
     Read read(const std::optional<OnePart>& only) const {
-        const int halo = filtered_ ? 1 : 0;
+        const int halo = volume::prefilterReach(prefilter_, geometry_);
         Read out{readPadded(source_,
                             {.channel = what_.channel,
                              .time = what_.time.earlier,
@@ -237,9 +244,10 @@ public:
                              .count = shape_.bricks * kBrick + (kRow - kBrick + 2 * halo)},
                             stop_),
                  {}};
-        if (!filtered_ || shape_.exact) out.range = extentOf(out.samples);
-        if (filtered_) out.samples = volume::prefilter(out.samples, geometry_);
-        if (filtered_ && !shape_.exact) out.range = extentOf(out.samples);
+        const bool filtered = prefilter_ != volume::Prefilter::None;
+        if (!filtered || shape_.exact) out.range = extentOf(out.samples);
+        if (filtered) out.samples = volume::prefiltered(out.samples, geometry_, prefilter_);
+        if (filtered && !shape_.exact) out.range = extentOf(out.samples);
         return out;
     }
     void setRange(const Extent& range) {
@@ -269,7 +277,10 @@ public:
             writer.samples();
             writer.bounds();
         });
-        if (out.bcc) spreadOdd(out);
+        if (out.cubic)
+            spreadCubic(out);
+        else if (out.bcc)
+            spreadOdd(out);
         if (!out.absent.empty()) spreadAbsent(out);
         return out;
     }
@@ -285,7 +296,7 @@ private:
     const PacketChannel& what_;
     std::stop_token stop_;
     volume::LevelGeometry geometry_;
-    bool filtered_ = false;
+    volume::Prefilter prefilter_ = volume::Prefilter::None;
     PacketVolume shape_;
 };
 
