@@ -34,6 +34,7 @@ public:
         : a_(earlier), b_(later), weight_(weight), whole_(earlier.present.empty() && later.present.empty()) {
         out_.bcc = a_.bcc;
         out_.exact = a_.exact;
+        out_.cubic = a_.cubic;
         out_.cells = a_.cells;
         out_.bricks = a_.bricks;
         out_.blocks = a_.blocks;

@@ -5,6 +5,7 @@
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/bricks/source_at_time.h"
+#include "volume/reconstruct/cubic.h"
 
 #include <algorithm>
 #include <array>
@@ -171,6 +172,12 @@ void spreadOdd(PacketVolume& volume) {
     spread(volume.hi, volume.blocks, 1, 0, kGreater);
 }
 
+/// A cubic kernel reads a sample more on every side.
+void spreadCubic(PacketVolume& volume) {
+    spread(volume.lo, volume.blocks, 1, 1, kLesser);
+    spread(volume.hi, volume.blocks, 1, 1, kGreater);
+}
+
 /// A block with an absent sample in a neighbour counts as having one: gradients read there, and so do the few samples
 /// that are taken before blocks are looked up again.
 void spreadAbsent(PacketVolume& volume) {
@@ -218,10 +225,11 @@ namespace {
 class VolumeMaker {
 public:
     VolumeMaker(const volume::BrickSource& source, const PacketChannel& what, std::stop_token stop)
-        : source_(source), what_(what), stop_(std::move(stop)) {
+        : source_(source), what_(what), stop_(std::move(stop)), geometry_(volume::levelGeometry(source.grid(), 0)) {
         const volume::DatasetInfo& info = source.info();
         shape_.labels = info.parameters[std::size_t(info.channel(what.channel).parameter)].categorical;
-        filtered_ = what.filter == Filter::AverageQuasi && !shape_.labels;
+        prefilter_ = shape_.labels ? volume::Prefilter::None : prefilterOf(what.filter);
+        shape_.cubic = prefilter_ == volume::Prefilter::Cubic;
         const volume::Lattice& lattice = source.grid().lattice;
         shape_.bcc = lattice.kind == volume::LatticeKind::BCC;
         shape_.exact = what.exact;
@@ -240,7 +248,7 @@ public:
     /// Filtered samples leave the range of the data, by up to 2/3 of its width but seldom by much, and 15 bits are few:
     /// so shorts have the range of the filtered ones.
     Read read(const std::optional<OnePart>& only) const {
-        const int halo = filtered_ ? 1 : 0;
+        const int halo = volume::prefilterReach(prefilter_, geometry_);
         Read out{readPadded(source_,
                             {.channel = what_.channel,
                              .time = what_.time.earlier,
@@ -249,10 +257,10 @@ public:
                              .count = shape_.bricks * kBrick + (kRow - kBrick + 2 * halo)},
                             stop_),
                  {}};
-        if (filtered_ && !shape_.exact)
-            out.range = LaidRows(out.samples, kind(), true).extent((shape_.cells + 1) * glm::ivec3(1, 1, slices()));
-        else
-            out.range = LaidRows(out.samples, kind(), false).extent(out.samples.size);
+        const bool before = shape_.exact || prefilter_ == volume::Prefilter::None;
+        if (before) out.range = extentOf(out.samples);
+        if (prefilter_ == volume::Prefilter::Cubic) out.samples = coefficients(std::move(out.samples));
+        if (!before) out.range = extentOf(out.samples);
         return out;
     }
     void setRange(const Extent& range) {
@@ -264,7 +272,7 @@ public:
     }
     PacketVolume write(const PaddedSamples& all) const {
         PacketVolume out = shape_;
-        const LaidRows rows(all, kind(), filtered_);
+        const LaidRows rows(all, kind(), prefilter_ == volume::Prefilter::Linear);
         const std::size_t bricks =
             std::size_t(shape_.bricks.x) * std::size_t(shape_.bricks.y) * std::size_t(shape_.bricks.z);
         const std::size_t samples = (bricks * std::size_t(out.stride()) + 1) * 2, blocks = bricks * 64;
@@ -288,12 +296,29 @@ public:
             writer.samples();
             writer.bounds();
         });
-        if (out.bcc) spreadOdd(out);
+        if (out.cubic)
+            spreadCubic(out);
+        else if (out.bcc)
+            spreadOdd(out);
         if (!out.absent.empty()) spreadAbsent(out);
         return out;
     }
 
 private:
+    /// As they are laid out: what the linear prefilter reads beyond the last cell does not count.
+    Extent extentOf(const PaddedSamples& samples) const {
+        if (prefilter_ == volume::Prefilter::Linear && !shape_.exact)
+            return LaidRows(samples, kind(), true).extent((shape_.cells + 1) * glm::ivec3(1, 1, slices()));
+        return LaidRows(samples, kind(), false).extent(samples.size);
+    }
+    PaddedSamples coefficients(PaddedSamples samples) const {
+        const volume::BrickSamples made =
+            volume::cubicCoefficients({.size = samples.size,
+                                       .values = {samples.values.begin(), samples.values.end()},
+                                       .present = std::move(samples.present)},
+                                      geometry_);
+        return {made.size, {made.values.begin(), made.values.end()}, made.present};
+    }
     volume::LatticeKind kind() const { return source_.grid().lattice.kind; }
     int slices() const { return shape_.bcc ? 2 : 1; } ///< of a texel
     glm::ivec3 placeOf(std::size_t i) const {
@@ -305,7 +330,8 @@ private:
     const volume::BrickSource& source_;
     const PacketChannel& what_;
     std::stop_token stop_;
-    bool filtered_ = false;
+    volume::LevelGeometry geometry_;
+    volume::Prefilter prefilter_ = volume::Prefilter::None;
     PacketVolume shape_;
 };
 

@@ -29,6 +29,7 @@ struct PacketVolume {
     bool bcc = false;
     bool exact = false;  ///< `floats` hold the samples, else `shorts`
     bool labels = false; ///< never interpolated; samples are whole numbers
+    bool cubic = false;  ///< samples are coefficients of cubic B-splines: Filter::Cubic
     glm::ivec3 cells{1}; ///< of a sublattice, with margins: a position lies in [0, cells)
     glm::ivec3 bricks{1};
     volume::UnfilledVector<std::int16_t> shorts; ///< 0 .. kQuantum
@@ -37,8 +38,8 @@ struct PacketVolume {
     /// the one at which a sample is present; the sample has that weight, too.
     volume::UnfilledVector<std::int16_t> present;
     double offset = 0, scale = 1; ///< physical value = offset + scale * sample
-    /// Bounds of the samples that interpolation in a block of kFine^3 cells can read, and whether one is absent. lo >
-    /// hi: all are.
+    /// Bounds of the samples that interpolation, linear or cubic, in a block of kFine^3 cells can read, and whether one
+    /// is absent. lo > hi: all are.
     glm::ivec3 blocks{1};
     std::vector<float> lo, hi;
     std::vector<std::uint8_t> absent; ///< empty: none
