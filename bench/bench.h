@@ -16,6 +16,11 @@ struct BenchTable {
 /// A number with so many decimals, for a cell of a table.
 std::string decimals(double value, int digits);
 
+/// Processor seconds and memory of commands for inputs of rising sizes, and how they grow. To be measured first: no
+/// program is seen to take less memory than this one has taken so far. `only`: inputs whose name contains it.
+BenchTable benchGrowth(const std::string& only);
+/// Seconds from a command to the picture of its window, of this program and of others at hand, and of `tessera info`.
+BenchTable benchStart();
 /// Reconstruction error of CC and BCC, with each filter, at equal and at 70.7 % of the samples, and of D4* at 50 %.
 BenchTable benchLattice();
 /// Archives on BCC with three transforms: each sublattice separately, both as one array, and one predicted from the

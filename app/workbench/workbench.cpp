@@ -279,11 +279,11 @@ void Workbench::afterFrame() {
 double Workbench::idleSeconds() const {
     // Jobs and samples wake the platform, programs come without a word. Frames meanwhile would take time from what is
     // waited for, above all where the processor draws them.
-    constexpr double kLook = 0.02, kWoken = 0.25;
+    constexpr double kLook = 0.02, kProgress = 0.2, kWoken = 0.25;
     if (hurries_ || picture_ || chosen_ || history().pending()) return 0;
     double wait = messages_.secondsToChange();
     if (busy_) wait = std::min(wait, panes_.compiling() || !options_.wake ? kLook : kWoken);
-    for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? 0.25 : 0.1);
+    for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? kWoken : kProgress);
     if (autosaver_) wait = std::min(wait, autosaver_->secondsToNext(document_, now()));
     return wait;
 }
