@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
+#include <utility>
 
 /// Samples as they are laid out, and what empty space is skipped by: bounds of blocks.
 namespace tessera::vis::packet {
@@ -120,12 +121,16 @@ TEST(PacketBlocks, BoundsAreTight) {
 
 /// Everything that interpolation between samples reads in the cells of a block lies within the block's bounds. In a
 /// cell that are the samples at its corners; of the odd sublattice of BCC, which lies half a cell further, also those
-/// before them.
+/// before them; with the cubic filter one more on every side.
 TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
     for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC})
-        for (const bool masked : {false, true}) {
-            const PacketVolume volume = readPacketVolume(*waves(kind, masked), {.filter = Filter::Average});
+        for (const auto& [masked, filter] : {std::pair{false, Filter::Average},
+                                             {true, Filter::Average},
+                                             {false, Filter::Cubic},
+                                             {true, Filter::Cubic}}) {
+            const PacketVolume volume = readPacketVolume(*waves(kind, masked), {.filter = filter});
             ASSERT_EQ(volume.bcc, kind == LatticeKind::BCC);
+            const int more = filter == Filter::Cubic ? 1 : 0;
             int read = 0;
             for (int n = 0; n < volume.cells.x * volume.cells.y * volume.cells.z; ++n) {
                 const glm::ivec3 cell(n % volume.cells.x, n / volume.cells.x % volume.cells.y,
@@ -134,11 +139,12 @@ TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
                 const std::size_t own = (std::size_t(block.z) * std::size_t(volume.blocks.y) + std::size_t(block.y)) *
                                             std::size_t(volume.blocks.x) +
                                         std::size_t(block.x);
-                for (int odd = 0; odd < (volume.bcc ? 2 : 1); ++odd)
-                    for (int corner = 0; corner < (odd == 1 ? 27 : 8); ++corner) {
-                        const glm::ivec3 by = odd == 1 ? glm::ivec3(corner % 3, corner / 3 % 3, corner / 9) - 1
-                                                       : glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-                        const std::size_t at = volume.at(glm::max(cell + by, glm::ivec3(0)), odd);
+                for (int odd = 0; odd < (volume.bcc ? 2 : 1); ++odd) {
+                    const int first = -odd - more, count = 2 + odd + 2 * more;
+                    for (int corner = 0; corner < count * count * count; ++corner) {
+                        const glm::ivec3 by =
+                            glm::ivec3(corner % count, corner / count % count, corner / count / count) + first;
+                        const std::size_t at = volume.at(glm::clamp(cell + by, glm::ivec3(0), volume.cells), odd);
                         if (!volume.present.empty() && volume.present[at] == 0) {
                             ASSERT_EQ(volume.absent[own], 1);
                             continue;
@@ -147,6 +153,7 @@ TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
                         ASSERT_GE(float(volume.shorts[at]), volume.lo[own] - 0.51f) << n << ' ' << odd << ' ' << corner;
                         ASSERT_LE(float(volume.shorts[at]), volume.hi[own] + 0.51f) << n << ' ' << odd << ' ' << corner;
                     }
+                }
             }
             EXPECT_GT(read, 50000);
         }

@@ -85,8 +85,8 @@ TEST(Cubic, CoefficientsAreThoseOfTheSteps) {
                 for (int z = 0; z < raw.size.z; ++z)
                     for (int y = 0; y < raw.size.y; ++y)
                         for (int x = 0; x < raw.size.x; ++x) {
-                            const glm::ivec3 here(x, y, z), lo = glm::max(here - 4, glm::ivec3(0)),
-                                                            hi = glm::min(here + 5, raw.size);
+                            const glm::ivec3 here(x, y, z), far(2, 2, 4), lo = glm::max(here - far, glm::ivec3(0)),
+                                                                          hi = glm::min(here + far + 1, raw.size);
                             double smooth = 0, weights = 0;
                             for (int k = lo.z; k < hi.z; ++k)
                                 for (int j = lo.y; j < hi.y; ++j)

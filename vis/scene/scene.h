@@ -42,8 +42,8 @@ inline constexpr std::string_view kEngineNames[] = {"auto", "gl", "cpu"};
 struct RenderParams {
     Filter filter = Filter::AverageQuasi; ///< reconstruction; on CC "quasi" is prefiltered trilinear, "average" and
                                           ///< "tetrahedral" trilinear
-    float detail = 1;     ///< pixels: bricked data use a coarser level where voxels would be smaller
-    float importance = 1; ///< number of levels by which unimportant bricks may be coarser
+    float detail = 1;                     ///< pixels: bricked data use a coarser level where voxels would be smaller
+    float importance = 1;                 ///< number of levels by which unimportant bricks may be coarser
     RenderLimits limits;
     float stepVoxels = 0.5f; ///< sample distance in cells of the finest level wanted
     volume::GradientSpan gradient = volume::GradientSpan::Neighbours;
@@ -62,9 +62,10 @@ struct RenderParams {
         visit(self.filter,
               FieldInfo{.key = "filter",
                         .doc = "Reconstruction between lattice points: linear between prefiltered samples (quasi), "
-                               "between the samples themselves (average; tetrahedral: from four of them on BCC), or by "
-                               "prefiltered cubic B-splines, the least error and several times the time, for pictures "
-                               "at rest (cubic)",
+                               "linear between the samples (average), on BCC from four of them (tetrahedral), or by "
+                               "cubic B-splines, with the least error and in several times the time, for pictures at "
+                               "rest (cubic). Cubic is for samples as they are: draw a grid on its own lattice, since "
+                               "its body-centred samples are corrected for quasi",
                         .names = kFilterNames});
         visit(self.stepVoxels,
               FieldInfo{.key = "step",
@@ -73,14 +74,15 @@ struct RenderParams {
                         .range = Range{0.05, 4},
                         .logScale = true});
         visit(self.detail, FieldInfo{.key = "detail",
-                                     .doc = "Voxels smaller than this are shown at a coarser level, in data too large "
-                                            "for one texture; 0 = full resolution",
+                                     .doc = "Voxels smaller than this are shown at a coarser level by OpenGL, in data "
+                                            "too large for one texture; 0 = full resolution, as the processor draws "
+                                            "all data",
                                      .unit = "pixel",
                                      .range = Range{0, 8}});
         visit(self.importance,
               FieldInfo{.key = "importance",
                         .doc = "Number of levels by which the least important bricks may be coarser than the most "
-                               "important one; 0 = the level depends on the size on screen only",
+                               "important one, as for the detail; 0 = the level depends on the size on screen only",
                         .unit = "level",
                         .range = Range{0, 4},
                         .group = kParts});
