@@ -26,7 +26,8 @@ constexpr NamedBench kBenches[] = {{"lattice", benchLattice},        {"lattice",
                                    {"thesis", benchThesisCoding},    {"thesis", benchThesisFrames},
                                    {"render", nullptr, benchRender}, {"render", nullptr, benchModes},
                                    {"styles", benchStyles},          {"link", benchLink},
-                                   {"link", benchScatter},           {"large", benchLarge}};
+                                   {"link", benchScatter},           {"playing", benchNewData},
+                                   {"playing", benchPlaying},        {"large", benchLarge}};
 
 /// Columns of texts to the left, of numbers to the right.
 void print(const BenchTable& table) {
