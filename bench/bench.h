@@ -56,6 +56,10 @@ BenchTable benchStyles();
 BenchTable benchLink();
 /// Milliseconds until a scatterplot matrix shows its first counts and all of them, and until it follows a brush.
 BenchTable benchScatter();
+/// Milliseconds until a time of 256^3 bytes that was not shown before is first seen, and until it is refined.
+BenchTable benchNewData();
+/// Pictures a second while two series are played for the first time, from memory and from archives.
+BenchTable benchPlaying();
 /// From an archive of 250x250x1000 samples to the first picture, to every view refined, and what dragging costs then.
 BenchTable benchLarge();
 /// Every mode of the ray caster on small, 256^3 and full-model volumes: CPU milliseconds of all threads per frame at

@@ -38,6 +38,8 @@ constexpr NamedBench kBenches[] = {{"growth", nullptr, benchGrowth},
                                    {"render", nullptr, benchRefined},
                                    {"link", benchLink},
                                    {"link", benchScatter},
+                                   {"playing", benchNewData},
+                                   {"playing", benchPlaying},
                                    {"large", benchLarge}};
 
 /// Columns of texts to the left, of numbers to the right.

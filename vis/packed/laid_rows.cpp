@@ -36,7 +36,9 @@ TESSERA_INLINE void filterBody(const RowsFrom& from, std::size_t rows, std::size
         }
         for (std::size_t i = 0; i < width; i += kTogether) {
             const std::size_t first = std::min(i, width - kTogether);
-            for (std::size_t j = 0; j < kTogether; ++j) out[first + j] = filtered<kCount>(in + first + j, steps);
+            float made[kTogether]; // which is no sample
+            for (std::size_t j = 0; j < kTogether; ++j) made[j] = filtered<kCount>(in + first + j, steps);
+            std::copy_n(made, kTogether, out + first);
         }
     }
 }

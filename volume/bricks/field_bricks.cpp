@@ -1,6 +1,7 @@
 #include "volume/bricks/field_bricks.h"
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <limits>
@@ -186,31 +187,48 @@ BrickSamples coarseBrick(const Field& field, const BrickGrid& grid, const BrickK
     return out;
 }
 
+namespace {
+
+constexpr std::size_t kTogether = 16; // so that the compiler uses vectors
+
+/// Takes numbers into the least and greatest ones, kTogether of each, that lie nowhere among them; NaN is neither.
+template <class T> void takeExtremes(const T* numbers, std::size_t count, T* __restrict least, T* __restrict most) {
+    const auto take = [&](T number, std::size_t at) {
+        least[at] = number < least[at] ? number : least[at];
+        most[at] = number > most[at] ? number : most[at];
+    };
+    const std::size_t whole = count / kTogether * kTogether;
+    for (std::size_t i = 0; i < whole; i += kTogether)
+        for (std::size_t j = 0; j < kTogether; ++j) take(numbers[i + j], j);
+    for (std::size_t i = whole; i < count; ++i) take(numbers[i], 0);
+}
+
+} // namespace
+
 BrickStats brickStats(const Field& field, glm::ivec3 begin, glm::ivec3 end) {
     BrickStats stats{std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest(), 0};
     const glm::ivec3 size = end - begin;
     std::size_t present = 0;
     dispatch(field.type, [&]<class T>(T) {
         const auto stored = field.as<T>();
-        T least = std::numeric_limits<T>::max(), most = std::numeric_limits<T>::lowest(); // NaN is neither
+        std::array<T, kTogether> leastOf, mostOf;
+        leastOf.fill(std::numeric_limits<T>::max());
+        mostOf.fill(std::numeric_limits<T>::lowest());
         for (int z = begin.z; z < end.z; ++z)
             for (int y = begin.y; y < end.y; ++y) {
-                const std::size_t row = field.lattice.index({begin.x, y, z});
-                const auto take = [&](T value) {
-                    least = value < least ? value : least;
-                    most = value > most ? value : most;
-                };
+                const std::size_t row = field.lattice.index({begin.x, y, z}), width = std::size_t(size.x);
                 if (!field.mask) {
-                    present += std::size_t(size.x);
-                    for (std::size_t i = row; i < row + std::size_t(size.x); ++i) take(stored[i]);
+                    present += width;
+                    takeExtremes(stored.data() + row, width, leastOf.data(), mostOf.data());
                     continue;
                 }
-                for (std::size_t i = row; i < row + std::size_t(size.x); ++i)
+                for (std::size_t i = row; i < row + width; ++i)
                     if ((*field.mask)[i] != 0) {
                         ++present;
-                        take(stored[i]);
+                        takeExtremes(&stored[i], 1, leastOf.data(), mostOf.data());
                     }
             }
+        const T least = *std::ranges::min_element(leastOf), most = *std::ranges::max_element(mostOf);
         if (!(least <= most)) return;
         const auto physical = [&](T value) { return float(field.offset + field.scale * double(value)); };
         stats.min = std::min(physical(least), physical(most));

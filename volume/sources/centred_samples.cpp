@@ -37,7 +37,7 @@ Tap between(double index) {
 
 /// Sum over the samples of the nearest one's part, with beyond(index, own) in place of others.
 template <class Beyond>
-double ownSum(const SampledBox& grid, const std::vector<float>& values, const std::array<const Tap*, 3>& taps,
+double ownSum(const SampledBox& grid, const UnfilledVector<float>& values, const std::array<const Tap*, 3>& taps,
               const Beyond& beyond) {
     Lattice box;
     box.size = grid.box.size();
