@@ -33,7 +33,7 @@ constexpr NamedBench kBenches[] = {{"lattice", benchLattice},
                                    {"render", nullptr, benchRender},
                                    {"render", nullptr, benchModes},
                                    {"styles", benchStyles},
-                                   {"render", nullptr, benchRefined},
+                                   {"refined", nullptr, benchRefined},
                                    {"link", benchLink},
                                    {"link", benchScatter},
                                    {"large", benchLarge}};
