@@ -80,7 +80,7 @@ bool isWanted(const NamedBench& bench, const Options& options) {
 void measure(const Options& options) {
     const auto usesVolume = [&](const NamedBench& bench) { return bench.measureVolumes && isWanted(bench, options); };
     if (!options.volume.empty() && std::ranges::none_of(kBenches, usesVolume))
-        throw tessera::Error("chooses among the volumes of render, which is not measured", {}, "--volume");
+        throw tessera::Error("chooses among the volumes of render and refined, neither of which is measured", {}, "--volume");
     nlohmann::json tables = nlohmann::json::array();
     for (const NamedBench& bench : kBenches) {
         if (!isWanted(bench, options)) continue;
@@ -105,7 +105,7 @@ int main(int argc, char** argv) try {
     for (const NamedBench& bench : kBenches)
         if (known.empty() || known.back() != bench.name) known.emplace_back(bench.name);
     app.add_option("name", options.names, "Which tables (default: all)")->check(CLI::IsMember(known));
-    app.add_option("--volume", options.volume, "With render: only volumes whose name contains this text");
+    app.add_option("--volume", options.volume, "With render and refined: only volumes whose name contains this text");
     app.add_flag("--json", options.json, "Print JSON with stable keys");
     app.callback([&] { measure(options); });
     return parseAndRun(app, argc, argv);
