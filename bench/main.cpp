@@ -35,7 +35,7 @@ constexpr NamedBench kBenches[] = {{"growth", nullptr, benchGrowth},
                                    {"render", nullptr, benchRender},
                                    {"render", nullptr, benchModes},
                                    {"styles", benchStyles},
-                                   {"render", nullptr, benchRefined},
+                                   {"refined", nullptr, benchRefined},
                                    {"link", benchLink},
                                    {"link", benchScatter},
                                    {"playing", benchNewData},
@@ -84,8 +84,9 @@ bool isWanted(const NamedBench& bench, const Options& options) {
 void measure(const Options& options) {
     const auto usesVolume = [&](const NamedBench& bench) { return bench.measureVolumes && isWanted(bench, options); };
     if (!options.volume.empty() && std::ranges::none_of(kBenches, usesVolume))
-        throw tessera::Error("chooses among the volumes of render and the inputs of growth, which are not measured", {},
-                             "--volume");
+        throw tessera::Error(
+            "chooses among the volumes of render and refined and the inputs of growth, none of which are measured", {},
+            "--volume");
     nlohmann::json tables = nlohmann::json::array();
     for (const NamedBench& bench : kBenches) {
         if (!isWanted(bench, options)) continue;
@@ -111,7 +112,7 @@ int main(int argc, char** argv) try {
         if (known.empty() || known.back() != bench.name) known.emplace_back(bench.name);
     app.add_option("name", options.names, "Which tables (default: all)")->check(CLI::IsMember(known));
     app.add_option("--volume", options.volume,
-                   "With render and growth: only volumes, or inputs, whose name contains this text");
+                   "With render, refined and growth: only volumes, or inputs, whose name contains this text");
     app.add_flag("--json", options.json, "Print JSON with stable keys");
     app.callback([&] { measure(options); });
     return parseAndRun(app, argc, argv);

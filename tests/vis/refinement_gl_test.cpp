@@ -166,9 +166,9 @@ TEST_F(Refinement, FurtherRaysOfTheProcessorAreCastWhereTheyAreNeeded) {
         Scene shown = scene(Engine::Processor);
         shown.render.samples = 4;
         shown.render.stepVoxels = 0.5f;
-        shown.layers.push_back({"within", true, IsoLayer{.channel = "w", .value = 0.35}});
+        shown.layers.push_back({"within", true, IsoLayer{.channel = "v", .value = 0.7}});
         shown.layers[1].lens = "lens";
-        shown.lenses = {{.name = "lens", .center = {13, 12, 18}, .size = glm::vec3(0.2f)}};
+        shown.lenses = {{.name = "lens", .center = {12, 12, 18}, .size = glm::vec3(0.3f)}};
         if (lines) {
             auto geometry = std::make_shared<Geometry>();
             geometry->lines.positions = {{2, 3, 20}, {25, 20, 16}, {4, 22, 30}};
@@ -182,7 +182,7 @@ TEST_F(Refinement, FurtherRaysOfTheProcessorAreCastWhereTheyAreNeeded) {
         const ViewTargetPtr other = renderer.makeTarget();
         EXPECT_TRUE(renderer.render(*other, shown, {.size = kSize, .wait = true}).complete);
         EXPECT_LT(test::maxDifference(slowly, renderer.readLinear(*other)), 1e-6);
-        shown.lenses[0].center.x += 2;
+        shown.lenses[0].center.x += 4;
         ASSERT_TRUE(frames(shown, complete));
         EXPECT_NE(target->state.stale(), target->buffers.everything()) << "all was drawn again";
         const std::vector<glm::vec4> part = renderer.readLinear(*target);

@@ -115,22 +115,45 @@ glm::vec4 AddedRays::around(const std::vector<glm::vec4>& of, glm::ivec2 pixel) 
     return of[at(pixel)];
 }
 
+/// A pixel and its neighbours, row by row.
+AddedRays::Nine AddedRays::nine(const std::vector<glm::vec4>& of, glm::ivec2 pixel) const {
+    Nine out;
+    const bool inside =
+        pixel.x > area_.begin.x && pixel.y > area_.begin.y && pixel.x + 1 < area_.end.x && pixel.y + 1 < area_.end.y;
+    for (int y = 0; y < 3; ++y)
+        if (inside)
+            std::copy_n(of.begin() + std::ptrdiff_t(at(pixel + glm::ivec2(-1, y - 1))), 3, out.begin() + 3 * y);
+        else
+            for (int x = 0; x < 3; ++x) out[std::size_t(3 * y + x)] = around(of, pixel + glm::ivec2(x - 1, y - 1));
+    return out;
+}
+
 /// The mean over the places of all rays of the polynomial through the first ones.
 glm::vec4 AddedRays::predicted(glm::ivec2 pixel) const {
-    const auto to = [&](int x, int y) { return around(first_, pixel + glm::ivec2(x, y)); };
-    const glm::vec4 own = to(0, 0), left = to(-1, 0), right = to(1, 0), below = to(0, -1), above = to(0, 1);
+    const Nine of = nine(first_, pixel);
+    const glm::vec4 own = of[4], left = of[3], right = of[5], below = of[1], above = of[7];
     return own +
            0.5f * (mean_.x * (right - left) + mean_.y * (above - below) + squares_.x * (left + right - 2.0f * own) +
                    squares_.y * (below + above - 2.0f * own)) +
-           0.25f * product_ * (to(1, 1) + to(-1, -1) - to(1, -1) - to(-1, 1));
+           0.25f * product_ * (of[8] + of[0] - of[2] - of[6]);
+}
+
+/// Whether the first rays of pixels have met nothing.
+bool AddedRays::isEmpty(const Tile& pixels) const {
+    for (int y = pixels.begin.y; y < pixels.end.y; ++y) {
+        const auto row = first_.begin() + std::ptrdiff_t(at({pixels.begin.x, y}));
+        if (!std::all_of(row, row + (pixels.end.x - pixels.begin.x),
+                         [](const glm::vec4& color) { return color == glm::vec4(0); }))
+            return false;
+    }
+    return true;
 }
 
 /// Whether a pixel differs from the mean of two opposite neighbours.
 bool AddedRays::standsOut(glm::ivec2 pixel) const {
-    const glm::vec4 own = around(shown_, pixel);
-    for (const glm::ivec2& way : {glm::ivec2(1, 0), glm::ivec2(0, 1), glm::ivec2(1, 1), glm::ivec2(1, -1)})
-        if (greatest(own - 0.5f * (around(shown_, pixel + way) + around(shown_, pixel - way))) > seen_.bound)
-            return true;
+    const Nine of = nine(shown_, pixel);
+    for (std::size_t i = 0; i < 4; ++i)
+        if (greatest(of[4] - 0.5f * (of[i] + of[8 - i])) > seen_.bound) return true;
     return false;
 }
 
@@ -150,8 +173,13 @@ bool AddedRays::choose(const Tile& tile) {
         const int y = blocks.begin.y + int(row);
         forEach({{blocks.begin.x, y}, {blocks.end.x, y + 1}}, [&](glm::ivec2 block) {
             const Tile own = pixelsOf(block), wide = intersection({own.begin - 1, own.end + 1}, area_);
-            const bool chosen = !(seen_.bound > 0) || (block.x + 5 * block.y) % kProbes == 0 ||
-                                anyIn(wide, [&](glm::ivec2 pixel) { return standsOut(pixel); });
+            const bool probed = (block.x + 5 * block.y) % kProbes == 0;
+            if (!probed && seen_.bound > 0 && isEmpty(intersection({own.begin - 2, own.end + 2}, area_))) {
+                state(block) = State::Predicted;
+                return forEach(own, [&](glm::ivec2 p) { now_[at(p)] = glm::vec4(0); });
+            }
+            const bool chosen =
+                !(seen_.bound > 0) || probed || anyIn(wide, [&](glm::ivec2 pixel) { return standsOut(pixel); });
             state(block) = chosen ? State::Chosen : State::Predicted;
             forEach(own, [&](glm::ivec2 p) { now_[at(p)] = chosen ? first_[at(p)] : predicted(p); });
         });

@@ -3,6 +3,7 @@
 #include "vis/packet/packet_renderer.h"
 #include "vis/raycast/tile.h"
 
+#include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -21,7 +22,7 @@ namespace tessera::vis {
 
 class AddedRays {
 public:
-    static constexpr float kAlike = 0.01f; ///< of the brightness of the screen
+    static constexpr float kAlike = 0.02f; ///< of the brightness of the screen
     static constexpr int kBlock = 4;       ///< pixels along the edge of a block; blocks begin with the area
 
     /// Begins an area of a picture of `size` pixels, without any rays.
@@ -60,6 +61,9 @@ private:
     State& state(glm::ivec2 block);
     State state(glm::ivec2 block) const;
     glm::vec4 shown(const glm::vec4& rgba) const;
+    using Nine = std::array<glm::vec4, 9>;
+    bool isEmpty(const Tile& pixels) const;
+    Nine nine(const std::vector<glm::vec4>& of, glm::ivec2 pixel) const;
     glm::vec4 around(const std::vector<glm::vec4>& of, glm::ivec2 pixel) const;
     glm::vec4 predicted(glm::ivec2 pixel) const;
     bool standsOut(glm::ivec2 pixel) const;

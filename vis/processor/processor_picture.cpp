@@ -37,10 +37,10 @@ std::optional<CubeMap> surroundingsIn(const EnvironmentLight& light, const std::
     }
 }
 
-/// Makes a picture of first rays that of all.
+/// Makes a picture of first rays that of all. Returns how many were cast for a pixel.
 template <class Geometry>
-void castFurther(packet::PacketRenderer& renderer, const Scene& scene, const Geometry& geometry,
-                 packet::PacketPicture& picture) {
+double castFurther(packet::PacketRenderer& renderer, const Scene& scene, const Geometry& geometry,
+                   packet::PacketPicture& picture) {
     const Tile all{picture.box.begin, picture.box.end};
     const int passes = raysPerPixel(scene);
     AddedRays added;
@@ -60,6 +60,7 @@ void castFurther(packet::PacketRenderer& renderer, const Scene& scene, const Geo
     } while (added.chooseMore());
     added.show(all, own);
     picture.rgba = std::move(own.rgba); // the first rays are picked
+    return 1 + added.share() * (passes - 1);
 }
 
 } // namespace
@@ -83,7 +84,7 @@ void ProcessorPicture::draw(const Scene& scene, glm::ivec2 size, const Data& dat
             return rasterized(seen, source.info(), light, size, pixelJitter(pass));
         };
         renderer_.draw(scene, 0, 1, 1, made, geometry(scene, 0));
-        if (raysPerPixel(scene) > 1) castFurther(renderer_, scene, geometry, made);
+        raysCast_ = raysPerPixel(scene) > 1 ? castFurther(renderer_, scene, geometry, made) : 1;
         if (scene.showBox) lines = boxLines(scene.camera, worldFrame(source.info(), scene.stretch).halfSize, size);
     }
     texture_.size = size;
