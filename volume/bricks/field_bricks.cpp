@@ -189,17 +189,17 @@ BrickSamples coarseBrick(const Field& field, const BrickGrid& grid, const BrickK
 
 namespace {
 
-constexpr std::size_t kTogether = 16; // so that the compiler uses vectors
+constexpr std::size_t kAtOnce = 16; // so that the compiler uses vectors
 
-/// Takes numbers into the least and greatest ones, kTogether of each, that lie nowhere among them; NaN is neither.
+/// Takes numbers into the least and greatest ones, kAtOnce of each, that lie nowhere among them; NaN is neither.
 template <class T> void takeExtremes(const T* numbers, std::size_t count, T* __restrict least, T* __restrict most) {
     const auto take = [&](T number, std::size_t at) {
         least[at] = number < least[at] ? number : least[at];
         most[at] = number > most[at] ? number : most[at];
     };
-    const std::size_t whole = count / kTogether * kTogether;
-    for (std::size_t i = 0; i < whole; i += kTogether)
-        for (std::size_t j = 0; j < kTogether; ++j) take(numbers[i + j], j);
+    const std::size_t whole = count / kAtOnce * kAtOnce;
+    for (std::size_t i = 0; i < whole; i += kAtOnce)
+        for (std::size_t j = 0; j < kAtOnce; ++j) take(numbers[i + j], j);
     for (std::size_t i = whole; i < count; ++i) take(numbers[i], 0);
 }
 
@@ -211,7 +211,7 @@ BrickStats brickStats(const Field& field, glm::ivec3 begin, glm::ivec3 end) {
     std::size_t present = 0;
     dispatch(field.type, [&]<class T>(T) {
         const auto stored = field.as<T>();
-        std::array<T, kTogether> leastOf, mostOf;
+        std::array<T, kAtOnce> leastOf, mostOf;
         leastOf.fill(std::numeric_limits<T>::max());
         mostOf.fill(std::numeric_limits<T>::lowest());
         for (int z = begin.z; z < end.z; ++z)
