@@ -80,7 +80,8 @@ bool isWanted(const NamedBench& bench, const Options& options) {
 void measure(const Options& options) {
     const auto usesVolume = [&](const NamedBench& bench) { return bench.measureVolumes && isWanted(bench, options); };
     if (!options.volume.empty() && std::ranges::none_of(kBenches, usesVolume))
-        throw tessera::Error("chooses among the volumes of render and refined, neither of which is measured", {}, "--volume");
+        throw tessera::Error("chooses among the volumes of render and refined, neither of which is measured", {},
+                             "--volume");
     nlohmann::json tables = nlohmann::json::array();
     for (const NamedBench& bench : kBenches) {
         if (!isWanted(bench, options)) continue;
