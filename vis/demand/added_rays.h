@@ -2,6 +2,7 @@
 
 #include "vis/packet/packet_renderer.h"
 #include "vis/raycast/tile.h"
+#include "vis/scene/scene.h"
 
 #include <array>
 #include <cstdint>
