@@ -38,12 +38,13 @@ BenchTable benchCodec();
 BenchTable benchPeers();
 /// Time to decode coarse levels and single bricks beside whole frames, and frames on two threads beside one.
 BenchTable benchLevels();
-/// Tables 6.1 and 6.2, 6.4, 6.5 of the thesis, its numbers beside ours for the volumes at hand.
+/// Tables 6.1 and 6.2, 6.4, 6.5, 6.3 of the thesis, its numbers beside ours for the volumes at hand.
 BenchTable benchThesisSizes();
 /// Bricks by importance, merged in each way, and their size if merged bricks were coded as one.
 BenchTable benchBricks();
 BenchTable benchThesisCoding();
 BenchTable benchThesisFrames();
+BenchTable benchThesisPictures();
 /// CPU milliseconds of all threads per frame at 512x512 beside VTK's mappers where they are at hand, with geometric
 /// means over the volumes. `volume`: only those whose name contains it.
 BenchTable benchRender(const std::string& volume);
