@@ -262,7 +262,7 @@ void Workbench::drawDialogs() {
 void Workbench::play() {
     if (!document_.loaded() || !session().animation.playing) return;
     busy_ = hurries_ = true;
-    if (!panes_.plays(session())) document_.play(double(ImGui::GetIO().DeltaTime));
+    if (!panes_.plays(session())) document_.play(double(ImGui::GetIO().DeltaTime), panes_.behind());
 }
 
 void Workbench::afterFrame() {
