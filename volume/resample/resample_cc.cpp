@@ -17,14 +17,6 @@ std::vector<AxisTaps> tapsOfSublattices(const Lattice& source, const Lattice& ta
     return taps;
 }
 
-/// A tap along z in the slices from `first` on.
-Tap within(Tap tap, int first) {
-    tap.first -= first;
-    tap.nearest -= first;
-    for (int& cell : tap.cell) cell -= first;
-    return tap;
-}
-
 /// Target slices in progress: `field` holds those from number `first` of the whole.
 struct TargetPart {
     Field& field;

@@ -33,14 +33,6 @@ Tap between(double index) {
     return tap;
 }
 
-/// A tap in a box that begins at `begin`.
-Tap within(Tap tap, int begin) {
-    tap.first -= begin;
-    tap.nearest -= begin;
-    for (int& cell : tap.cell) cell -= begin;
-    return tap;
-}
-
 /// Sum over the samples of the nearest one's part, with beyond(index, own) in place of others.
 template <class Beyond>
 double ownSum(const SampledBox& grid, const std::vector<float>& values, const std::array<const Tap*, 3>& taps,
