@@ -18,15 +18,25 @@ struct NamedBench {
     BenchTable (*measure)() = nullptr;
     BenchTable (*measureVolumes)(const std::string& volume) = nullptr;
 };
-constexpr NamedBench kBenches[] = {{"lattice", benchLattice},        {"lattice", benchResample},
-                                   {"lattice", benchBccTransforms},  {"lattice", benchLatticeBytes},
-                                   {"lattice", benchSignalBytes},    {"codec", benchCodec},
-                                   {"codec", benchLevels},           {"codec", benchPeers},
-                                   {"thesis", benchThesisSizes},     {"thesis", benchBricks},
-                                   {"thesis", benchThesisCoding},    {"thesis", benchThesisFrames},
-                                   {"render", nullptr, benchRender}, {"render", nullptr, benchModes},
-                                   {"styles", benchStyles},          {"link", benchLink},
-                                   {"link", benchScatter},           {"large", benchLarge}};
+constexpr NamedBench kBenches[] = {{"lattice", benchLattice},
+                                   {"lattice", benchResample},
+                                   {"lattice", benchBccTransforms},
+                                   {"lattice", benchLatticeBytes},
+                                   {"lattice", benchSignalBytes},
+                                   {"codec", benchCodec},
+                                   {"codec", benchBounded},
+                                   {"codec", benchLevels},
+                                   {"codec", benchPeers},
+                                   {"thesis", benchThesisSizes},
+                                   {"thesis", benchBricks},
+                                   {"thesis", benchThesisCoding},
+                                   {"thesis", benchThesisFrames},
+                                   {"render", nullptr, benchRender},
+                                   {"render", nullptr, benchModes},
+                                   {"styles", benchStyles},
+                                   {"link", benchLink},
+                                   {"link", benchScatter},
+                                   {"large", benchLarge}};
 
 /// Columns of texts to the left, of numbers to the right.
 void print(const BenchTable& table) {
