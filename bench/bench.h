@@ -34,6 +34,8 @@ BenchTable benchSignalBytes();
 BenchTable benchResample();
 /// Pack throughput and archive size against raw and against zstd -19 of the same bytes.
 BenchTable benchCodec();
+/// Packing within an error bound: the built-in cell, which has parts, on CC and BCC, and volumes of floats.
+BenchTable benchBounded();
 /// Archives beside zstd and whatever else is installed (lz4, xz, blosc, HDF5, OpenJPEG, zfp), in one process.
 BenchTable benchPeers();
 /// Time to decode coarse levels and single bricks beside whole frames, and frames on two threads beside one.
