@@ -37,14 +37,6 @@ struct Tap {
     double fraction = 0;
 };
 
-/// The tap in samples of which the first is number `first` of the axis.
-inline Tap within(Tap tap, int first) {
-    tap.first -= first;
-    tap.nearest -= first;
-    for (int& cell : tap.cell) cell -= first;
-    return tap;
-}
-
 /// Samples a kernel spans along an axis, at most `count`. The same for every target coordinate.
 int tapCount(const ResampleOptions& options, int count);
 
