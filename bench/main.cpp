@@ -18,15 +18,31 @@ struct NamedBench {
     BenchTable (*measure)() = nullptr;
     BenchTable (*measureVolumes)(const std::string& volume) = nullptr;
 };
-constexpr NamedBench kBenches[] = {{"lattice", benchLattice},        {"lattice", benchResample},
-                                   {"lattice", benchBccTransforms},  {"lattice", benchLatticeBytes},
-                                   {"lattice", benchSignalBytes},    {"codec", benchCodec},
-                                   {"codec", benchLevels},           {"codec", benchPeers},
-                                   {"thesis", benchThesisSizes},     {"thesis", benchBricks},
-                                   {"thesis", benchThesisCoding},    {"thesis", benchThesisFrames},
-                                   {"render", nullptr, benchRender}, {"render", nullptr, benchModes},
-                                   {"styles", benchStyles},          {"link", benchLink},
-                                   {"link", benchScatter},           {"large", benchLarge}};
+constexpr NamedBench kBenches[] = {{"growth", nullptr, benchGrowth},
+                                   {"start", benchStart},
+                                   {"lattice", benchLattice},
+                                   {"lattice", benchResample},
+                                   {"lattice", benchBccTransforms},
+                                   {"lattice", benchLatticeBytes},
+                                   {"lattice", benchSignalBytes},
+                                   {"codec", benchCodec},
+                                   {"codec", benchBounded},
+                                   {"codec", benchLevels},
+                                   {"codec", benchPeers},
+                                   {"thesis", benchThesisSizes},
+                                   {"thesis", benchBricks},
+                                   {"thesis", benchThesisCoding},
+                                   {"thesis", benchThesisFrames},
+                                   {"thesis", benchThesisPictures},
+                                   {"render", nullptr, benchRender},
+                                   {"render", nullptr, benchModes},
+                                   {"styles", benchStyles},
+                                   {"refined", nullptr, benchRefined},
+                                   {"link", benchLink},
+                                   {"link", benchScatter},
+                                   {"playing", benchNewData},
+                                   {"playing", benchPlaying},
+                                   {"large", benchLarge}};
 
 /// Columns of texts to the left, of numbers to the right.
 void print(const BenchTable& table) {
@@ -70,7 +86,9 @@ bool isWanted(const NamedBench& bench, const Options& options) {
 void measure(const Options& options) {
     const auto usesVolume = [&](const NamedBench& bench) { return bench.measureVolumes && isWanted(bench, options); };
     if (!options.volume.empty() && std::ranges::none_of(kBenches, usesVolume))
-        throw tessera::Error("chooses among the volumes of render, which is not measured", {}, "--volume");
+        throw tessera::Error(
+            "chooses among the volumes of render and refined and the inputs of growth, none of which are measured", {},
+            "--volume");
     nlohmann::json tables = nlohmann::json::array();
     for (const NamedBench& bench : kBenches) {
         if (!isWanted(bench, options)) continue;
@@ -95,7 +113,8 @@ int main(int argc, char** argv) try {
     for (const NamedBench& bench : kBenches)
         if (known.empty() || known.back() != bench.name) known.emplace_back(bench.name);
     app.add_option("name", options.names, "Which tables (default: all)")->check(CLI::IsMember(known));
-    app.add_option("--volume", options.volume, "With render: only volumes whose name contains this text");
+    app.add_option("--volume", options.volume,
+                   "With render, refined and growth: only volumes, or inputs, whose name contains this text");
     app.add_flag("--json", options.json, "Print JSON with stable keys");
     app.callback([&] { measure(options); });
     return parseAndRun(app, argc, argv);

@@ -11,7 +11,7 @@ namespace tessera::app {
 
 namespace {
 
-constexpr std::size_t kBins = 1024;
+constexpr std::size_t kHistogramBins = 1024;
 
 bool categorical(const volume::DatasetInfo& info, int channel) {
     return info.parameters[std::size_t(info.channel(channel).parameter)].categorical;
@@ -23,14 +23,14 @@ vis::ValueDistribution readDistribution(const volume::BrickSource& source, int c
     const volume::DatasetInfo& info = source.info();
     vis::ValueDistribution out;
     out.range = info.channelRange(info.channel(channel));
-    out.count.assign(kBins, 0);
+    out.count.assign(kHistogramBins, 0);
     if (!(out.range.hi > out.range.lo)) return out;
-    const double scale = double(kBins) / (out.range.hi - out.range.lo);
+    const double scale = double(kHistogramBins) / (out.range.hi - out.range.lo);
     forSamples(
         source, channel, time, source.grid().levelWithin(kQuickSamples), [](glm::ivec3, glm::ivec3) { return true; },
         [&](glm::ivec3, float value) {
             const double bin = (double(value) - out.range.lo) * scale;
-            ++out.count[std::size_t(std::clamp(bin, 0.0, double(kBins - 1)))];
+            ++out.count[std::size_t(std::clamp(bin, 0.0, double(kHistogramBins - 1)))];
         });
     out.background = backgroundShare(source, channel, time).value_or(vis::spikeBackground(out.count));
     return out;

@@ -125,8 +125,8 @@ void Document::stepTime(int count) {
     session_.time = times[static_cast<std::size_t>(at)];
 }
 
-void Document::play(double seconds) {
-    playOn(playback_, session_, info().times, seconds);
+void Document::play(double seconds, bool behind) {
+    playOn(playback_, session_, info().times, seconds, behind);
 }
 
 } // namespace tessera::app

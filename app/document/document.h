@@ -67,8 +67,8 @@ public:
     void replace(Session session, const std::string& name);
     /// Moves by this number of stored times, and stops playing.
     void stepTime(int count);
-    /// Advances playing by this number of seconds.
-    void play(double seconds);
+    /// Advances playing by this number of seconds; `behind`: views do not show its time yet.
+    void play(double seconds, bool behind = false);
 
 private:
     Session session_, saved_; ///< current, and as last saved or opened

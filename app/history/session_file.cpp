@@ -116,13 +116,30 @@ void keepHiddenFocus(Json& document) {
         (*selection)["focusOpacity"] = 0;
 }
 
+constexpr std::string_view kKindOfFlow = "/technique/kind"; ///< ends the path of that setting
+
+/// Whether something other than a layer itself makes it one of paths: keyframes of the kind, a variant of a comparison,
+/// a step of the history.
+bool becomesPaths(const Json& json) {
+    if (!json.is_structured()) return false;
+    if (json.is_object()) {
+        const auto path = json.find("path");
+        const bool kind =
+            path != json.end() && path->is_string() && path->get_ref<const std::string&>().ends_with(kKindOfFlow);
+        if (kind && (json.contains("keys") || json.value("value", Json()) == "pathlines")) return true;
+        for (const auto& [key, value] : json.items())
+            if (key.ends_with(kKindOfFlow) && (value == "pathlines" || value == "\"pathlines\"")) return true;
+    }
+    return std::ranges::any_of(json, becomesPaths);
+}
+
 /// Up to schema 5 paths took a vector of 1 as 1 length per time, whatever the units of the data: in every list of
-/// layers and in the steps of the history.
-void keepSpeedOfPaths(Json& json) {
+/// layers and in the steps of the history; `all`: of every layer of flow, since it may become one of paths.
+void keepSpeedOfPaths(Json& json, bool all) {
     if (!json.is_structured()) return;
-    if (json.is_object() && json.value("type", Json()) == "flow" && json.value("kind", Json()) == "pathlines")
-        json["ignoreUnits"] = true;
-    for (Json& part : json) keepSpeedOfPaths(part);
+    const bool flow = json.is_object() && json.value("type", Json()) == "flow";
+    if (flow && (all || json.value("kind", Json()) == "pathlines")) json["ignoreUnits"] = true;
+    for (Json& part : json) keepSpeedOfPaths(part, all);
 }
 
 } // namespace
@@ -147,7 +164,7 @@ void migrate(Json& document, const std::string& file) {
         forEachData(document, keepEvenCell);
         keepHiddenFocus(document);
     }
-    if (schema < 6) keepSpeedOfPaths(document);
+    if (schema < 6) keepSpeedOfPaths(document, becomesPaths(document));
     document["schema"] = kSessionSchema;
 }
 

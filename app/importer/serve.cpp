@@ -32,6 +32,7 @@ using volume::MessageKind;
 using volume::ScalarType;
 
 constexpr std::size_t kMostKilobytesKept = 512 * 1024; // of data kept from earlier requests
+constexpr std::size_t kMostKept = 256;                 // times of files, which are looked through at each request
 constexpr const char* kNoMemory = "not enough memory";
 constexpr std::chrono::hours kMostTime{1}; // of the processor for one answer
 
@@ -86,10 +87,10 @@ Loaded& load(State& state, std::size_t file, int time) {
     if (!opened.source) opened.source = openSource(opened.files);
     Loaded now{file, time, readBlocks(*opened.source, time), 0};
     now.kilobytes = kilobytesOf(now.blocks);
-    std::size_t kept = now.kilobytes;
+    std::size_t kept = now.kilobytes, count = 1;
     for (auto at = state.loaded.begin(); at != state.loaded.end();) {
         kept += at->kilobytes;
-        at = kept > kMostKilobytesKept ? state.loaded.erase(at) : std::next(at);
+        at = kept > kMostKilobytesKept || ++count > kMostKept ? state.loaded.erase(at) : std::next(at);
     }
     state.loaded.push_front(std::move(now));
     return state.loaded.front();

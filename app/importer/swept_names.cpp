@@ -6,7 +6,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <set>
 #include <utility>
 #include <vtkAbstractArray.h>
@@ -81,46 +83,85 @@ std::vector<std::string> arrayNames(vtkDataObject* data) {
     return names;
 }
 
-/// Leaves the arrays of one time, under their names, behind those of all times.
-void keepTime(vtkDataSetAttributes* arrays, const SweptArrays& swept, std::size_t time) {
-    std::vector<vtkSmartPointer<vtkAbstractArray>> others;
-    std::vector<vtkSmartPointer<vtkDataArray>> kept;
-    for (int i = 0; i < arrays->GetNumberOfArrays(); ++i) {
-        vtkAbstractArray* any = arrays->GetAbstractArray(i);
-        auto* array = vtkDataArray::SafeDownCast(any);
-        const auto place =
-            array == nullptr || array->GetName() == nullptr ? swept.places.end() : swept.places.find(array->GetName());
-        if (place == swept.places.end()) {
-            others.emplace_back(any);
-            continue;
+/// The arrays of points or cells by the time they belong to, so that a time costs what its own arrays cost: VTK looks
+/// for an array of the same name among all others whenever one is added.
+class SortedArrays {
+public:
+    SortedArrays(vtkDataSetAttributes* from, const SweptArrays& swept) : all_(from) {
+        for (int i = 0; i < from->GetNumberOfArrays(); ++i) {
+            vtkAbstractArray* any = from->GetAbstractArray(i);
+            auto* array = vtkDataArray::SafeDownCast(any);
+            const auto place = array == nullptr || array->GetName() == nullptr ? swept.places.end()
+                                                                               : swept.places.find(array->GetName());
+            if (place == swept.places.end()) {
+                others_.emplace_back(any);
+                continue;
+            }
+            const auto named = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+            named->ShallowCopy(array);
+            named->SetName(place->second.name.c_str());
+            byTime_.resize(std::max(byTime_.size(), place->second.time + 1));
+            byTime_[place->second.time].push_back(named);
         }
-        if (place->second.time != time) continue;
-        kept.push_back(vtkSmartPointer<vtkDataArray>::Take(array->NewInstance()));
-        kept.back()->ShallowCopy(array);
-        kept.back()->SetName(place->second.name.c_str());
     }
-    if (others.size() == std::size_t(arrays->GetNumberOfArrays())) return;
-    arrays->Initialize(); // one by one each removal would move all arrays behind it
-    for (const auto& array : others) arrays->AddArray(array);
-    for (const auto& array : kept) arrays->AddArray(array);
-}
+    /// Adds the arrays of one time, under their names, behind those of all times.
+    void addTo(vtkDataSetAttributes* to, std::size_t time) const {
+        if (byTime_.empty()) {
+            to->ShallowCopy(all_);
+            return;
+        }
+        for (const auto& array : others_) to->AddArray(array);
+        if (time < byTime_.size())
+            for (const auto& array : byTime_[time]) to->AddArray(array);
+    }
 
-vtkSmartPointer<vtkDataObject> atTime(vtkDataObject* data, const SweptArrays& swept, std::size_t time) {
-    vtkSmartPointer<vtkDataObject> copy = vtkSmartPointer<vtkDataObject>::Take(data->NewInstance());
-    if (auto* composite = vtkCompositeDataSet::SafeDownCast(copy)) {
-        auto* from = vtkCompositeDataSet::SafeDownCast(data);
-        composite->CopyStructure(from);
-        const auto at = vtkSmartPointer<vtkCompositeDataIterator>::Take(from->NewIterator());
-        for (at->InitTraversal(); !at->IsDoneWithTraversal(); at->GoToNextItem())
-            composite->SetDataSet(at, atTime(at->GetCurrentDataObject(), swept, time));
+private:
+    vtkSmartPointer<vtkDataSetAttributes> all_;
+    std::vector<vtkSmartPointer<vtkAbstractArray>> others_;
+    std::vector<std::vector<vtkSmartPointer<vtkDataArray>>> byTime_; ///< empty where none is swept
+};
+
+/// A block of the data with its arrays sorted.
+struct SortedBlock {
+    vtkSmartPointer<vtkDataSet> block;
+    SortedArrays points, cells;
+
+    SortedBlock(vtkDataSet* from, const SweptArrays& swept)
+        : block(from), points(from->GetPointData(), swept), cells(from->GetCellData(), swept) {}
+    vtkSmartPointer<vtkDataSet> at(std::size_t time) const {
+        auto copy = vtkSmartPointer<vtkDataSet>::Take(block->NewInstance());
+        copy->CopyStructure(block);
+        copy->SetFieldData(block->GetFieldData());
+        points.addTo(copy->GetPointData(), time);
+        cells.addTo(copy->GetCellData(), time);
         return copy;
     }
-    copy->ShallowCopy(data);
-    if (auto* set = vtkDataSet::SafeDownCast(copy)) {
-        keepTime(set->GetPointData(), swept, time);
-        keepTime(set->GetCellData(), swept, time);
+};
+
+/// Reads each time of data whose arrays are swept.
+std::function<vtkSmartPointer<vtkDataObject>(std::size_t)> readerOf(const vtkSmartPointer<vtkDataObject>& data,
+                                                                    const SweptArrays& swept) {
+    if (auto* set = vtkDataSet::SafeDownCast(data)) {
+        const auto sorted = std::make_shared<const SortedBlock>(set, swept);
+        return [sorted](std::size_t time) -> vtkSmartPointer<vtkDataObject> { return sorted->at(time); };
     }
-    return copy;
+    auto* composite = vtkCompositeDataSet::SafeDownCast(data);
+    if (composite == nullptr) return [data](std::size_t) { return data; };
+    const auto sorted = std::make_shared<std::map<vtkDataObject*, SortedBlock>>();
+    const auto each = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+    for (each->InitTraversal(); !each->IsDoneWithTraversal(); each->GoToNextItem())
+        if (auto* set = vtkDataSet::SafeDownCast(each->GetCurrentDataObject())) sorted->try_emplace(set, set, swept);
+    return [data, sorted](std::size_t time) -> vtkSmartPointer<vtkDataObject> {
+        auto* from = vtkCompositeDataSet::SafeDownCast(data);
+        auto copy = vtkSmartPointer<vtkCompositeDataSet>::Take(from->NewInstance());
+        copy->CopyStructure(from);
+        const auto at = vtkSmartPointer<vtkCompositeDataIterator>::Take(from->NewIterator());
+        for (at->InitTraversal(); !at->IsDoneWithTraversal(); at->GoToNextItem()) {
+            const auto block = sorted->find(at->GetCurrentDataObject());
+            copy->SetDataSet(at, block != sorted->end() ? block->second.at(time).Get() : at->GetCurrentDataObject());
+        }
+        return copy;
+    };
 }
 
 } // namespace
@@ -200,6 +241,7 @@ SweptArrays sortSwept(const std::vector<std::string>& names) {
     for (const std::string& name : names)
         if (!sweptName(name)) taken.insert(name);
     std::set<std::pair<std::string, std::size_t>> used;
+    std::map<std::pair<std::string, std::size_t>, std::size_t> marks; // of the last one with these conditions
     for (const auto& [name, parts] : swept) {
         SweptArrays::Place place{parts.base, 0};
         for (const auto& [parameter, value] : parts.values)
@@ -209,7 +251,9 @@ SweptArrays sortSwept(const std::vector<std::string>& names) {
         if (const SweptName::Value* axis = parts.find(out.axis))
             place.time = std::size_t(std::ranges::lower_bound(out.times, axis->number) - out.times.begin());
         if (taken.contains(place.name)) place.name += " @ " + (out.axis.empty() ? "one state" : out.axis);
-        while (!used.insert({place.name, place.time}).second) place.name += "'"; // the same conditions twice
+        std::size_t& own = marks[{place.name, place.time}];
+        place.name.append(own, '\'');
+        for (; !used.insert({place.name, place.time}).second; ++own) place.name += '\''; // the same conditions twice
         out.places[name] = std::move(place);
     }
     return out;
@@ -258,7 +302,7 @@ void foldSweptNames(Source& source, vtkSmartPointer<vtkDataObject> data) {
     source.reader = nullptr;
     source.readerTimes.clear();
     source.check = nullptr;
-    source.read = [data, swept](std::size_t time) { return atTime(data, swept, time); };
+    source.read = readerOf(data, swept);
 }
 
 } // namespace tessera::importer

@@ -3,7 +3,10 @@
 #include "app/pane/view_parts.h"
 #include "vis/glyphs/glyph_parts.h"
 #include "vis/glyphs/make_glyphs.h"
+#include "vis/lic/surface_strokes.h"
+#include "vis/optics/ray_setup.h"
 #include "vis/shapes/flow_geometry.h"
+#include "volume/bricks/brick_cache.h"
 #include "volume/bricks/source_at_time.h"
 #include "volume/flow/flow_channels.h"
 #include "volume/mesh/isosurface.h"
@@ -20,6 +23,11 @@ namespace {
 
 constexpr std::size_t kMovingTriangles = 400'000; ///< more are slow on software GL
 constexpr double kCoarseSamples = 5e5;            ///< of the first level: extracted within a few milliseconds
+constexpr std::size_t kStrokeVertices = 600'000;  ///< of a surface with strokes at rest
+constexpr std::size_t kStrokeBricks = std::size_t(128) << 20; ///< bytes of decoded bricks
+
+/// Colour of a surface of strokes alone, as that of slices (vis/formulas/colors.h).
+const glm::vec3 kStrokesGround(float(vis::srgbFromLinear(vis::kStrokeGrey)));
 
 using SharedGeometry = std::shared_ptr<const vis::Geometry>;
 using SharedSource = std::shared_ptr<const volume::BrickSource>;
@@ -31,6 +39,28 @@ std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const volum
     if (!channel) return std::nullopt;
     SurfaceQuery query{*channel, -1, time, layer.value};
     if (!layer.colorBy.empty()) query.colorBy = info.findChannel(layer.colorBy).value_or(-1);
+    query.spaceTime = layer.method == vis::SurfaceMethod::SpaceTime && !info.plane && info.times.size() > 1 &&
+                      !volume::parameterOf(info, *channel).categorical;
+    return query;
+}
+
+/// The same of data that may be a plane in space and time, whose surfaces are cut from those of the data it is of.
+std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const Session& session,
+                                         const volume::DatasetInfo& info, const SharedSource& space) {
+    std::optional<SurfaceQuery> query = surfaceQuery(layer, info, volume::timesAround(info.times, session.time));
+    if (!query) return query;
+    if (!layer.strokes.vector.empty() && !info.timeAxis()) { // times and lengths have no direction
+        query->strokes = layer.strokes;
+        query->strokes.strength = 1; // how they are drawn
+        query->strokes.grey = false;
+        query->stretch = session.stretch;
+    }
+    if (layer.method != vis::SurfaceMethod::SpaceTime || !info.plane || !space) return query;
+    const std::optional<int> channel = space->info().findChannel(layer.channel);
+    if (!channel || volume::parameterOf(space->info(), *channel).categorical) return query;
+    query->spaceTime = true;
+    query->space = space;
+    query->spaceChannel = *channel;
     return query;
 }
 
@@ -60,7 +90,8 @@ GlyphQuery glyphQuery(const vis::GlyphLayer& glyphs, vis::BrushEffect effect, co
 }
 
 /// Nothing for layers that are drawn otherwise.
-std::optional<GeometryQuery> queryOf(const vis::Layer& layer, const Session& session, const volume::DatasetInfo& info) {
+std::optional<GeometryQuery> queryOf(const vis::Layer& layer, const Session& session, const volume::DatasetInfo& info,
+                                     const SharedSource& space) {
     const vis::Technique& technique = layer.technique;
     if (const auto* flow = std::get_if<vis::FlowLayer>(&technique)) {
         if (info.timeAxis()) return std::nullopt; // vectors have no direction between lengths and times
@@ -69,33 +100,74 @@ std::optional<GeometryQuery> queryOf(const vis::Layer& layer, const Session& ses
     if (const auto* glyphs = std::get_if<vis::GlyphLayer>(&technique))
         return glyphQuery(*glyphs, layer.brushes, session, info);
     const auto* iso = std::get_if<vis::IsoLayer>(&technique);
-    if (!iso || iso->method != vis::SurfaceMethod::Polygons) return std::nullopt;
-    return surfaceQuery(*iso, info, volume::timesAround(info.times, session.time));
+    if (!iso || !iso->meshed()) return std::nullopt;
+    return surfaceQuery(*iso, session, info, space);
+}
+
+/// The level of detail that a surface in space and time is made of where that of `level` is wanted.
+int levelInTime(const SurfaceQuery& query, const volume::BrickSource& source, int level) {
+    const volume::BrickSource& from = query.space ? *query.space : source;
+    const int times = query.space ? int(from.info().times.size()) : 2;
+    return std::min(std::max(level, volume::levelOfSpaceTime(from.grid(), times)), from.grid().levels - 1);
+}
+
+/// Where a surface is made: on the sheet of the axes, where it is drawn, or in space.
+enum class Surroundings { Sheet, Space };
+
+volume::SurfaceMesh meshOf(const SurfaceQuery& query, const SharedSource& source, Surroundings in,
+                           volume::SpaceTimeSurfaces& inTime, int level, const Progress& progress) {
+    const volume::AxisMaps axes = in == Surroundings::Sheet ? source->info().lattice.axes : volume::AxisMaps{};
+    if (query.space)
+        return inTime.inPlane(query.space, query.spaceChannel, query.value, *source->info().plane, axes,
+                              levelInTime(query, *source, level), progress);
+    if (query.spaceTime)
+        return inTime.atTime(source, query.channel, query.value, query.time, axes, levelInTime(query, *source, level),
+                             progress);
+    const volume::SourceAtTime shown =
+        volume::sourceAt(in == Surroundings::Sheet ? volume::sheetSource(source) : source, query.time);
+    return volume::parameterOf(source->info(), query.channel).categorical
+               ? volume::extractRegionSurface(*shown.source, query.channel, shown.time, int(std::lround(query.value)),
+                                              level, progress)
+               : volume::extractIsosurface(*shown.source, query.channel, shown.time, query.value, level, progress);
 }
 
 /// The surface at a level of detail, with the values of its colouring parameter at the vertices.
-SharedGeometry make(const SurfaceQuery& query, const SharedSource& source, int level, const Progress& progress) {
-    const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
+std::shared_ptr<vis::Geometry> make(const SurfaceQuery& query, const SharedSource& source, Surroundings in,
+                                    volume::SpaceTimeSurfaces& inTime, int level, const Progress& progress) {
     auto geometry = std::make_shared<vis::Geometry>();
     const double share = query.colorBy < 0 ? 1 : 0.6;
-    geometry->mesh = volume::parameterOf(source->info(), query.channel).categorical
-                         ? volume::extractRegionSurface(*shown.source, query.channel, shown.time,
-                                                        int(std::lround(query.value)), level, progress.part(0, share))
-                         : volume::extractIsosurface(*shown.source, query.channel, shown.time, query.value, level,
-                                                     progress.part(0, share));
-    if (query.colorBy >= 0)
-        volume::sampleAtVertices(geometry->mesh, *shown.source, query.colorBy, shown.time, level,
-                                 progress.part(share, 1));
+    geometry->mesh = meshOf(query, source, in, inTime, level, progress.part(0, share));
+    if (query.colorBy < 0) return geometry;
+    const volume::SourceAtTime shown =
+        volume::sourceAt(in == Surroundings::Sheet ? volume::sheetSource(source) : source, query.time);
+    volume::sampleAtVertices(geometry->mesh, *shown.source, query.colorBy, shown.time, level, progress.part(share, 1));
     return geometry;
 }
 
-/// The same as it is drawn: on the sheet of the axes.
-SharedGeometry makeDrawn(const SurfaceQuery& query, const SharedSource& source, int level, const Progress& progress) {
-    return make(query, volume::sheetSource(source), level, progress);
+/// The same as it is drawn. `level`: set to the finest where that surface in space and time is there already.
+SharedGeometry makeDrawn(const SurfaceQuery& query, const SharedSource& source, volume::SpaceTimeSurfaces& inTime,
+                         int& level, const Progress& progress) {
+    const int finest = query.spaceTime ? levelInTime(query, *source, 0) : 0;
+    if (query.spaceTime && !query.space && inTime.keeps(source, query.channel, query.value, query.time, finest))
+        level = 0;
+    const bool strokes = !query.strokes.vector.empty();
+    // Where strokes are what takes long they alone are coarse at first.
+    const bool small = source->grid().levelWithin(kCoarseSamples) == 0;
+    auto geometry = make(query, source, Surroundings::Sheet, inTime, strokes && small ? 0 : level,
+                         progress.part(0, strokes ? 0.3 : 1));
+    if (finest > 0) geometry->notes.push_back(vis::coarserText("surface in space and time", finest));
+    if (strokes) {
+        const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
+        const volume::BrickCache cache(shown.source, kStrokeBricks);
+        vis::addStrokes(*geometry, cache, shown.time, query.strokes, query.stretch,
+                        level > 0 ? kMovingTriangles / 4 : kStrokeVertices, progress.part(0.3, 1));
+    }
+    return geometry;
 }
 
 /// Null where there is nothing to show.
-SharedGeometry makeDrawn(const FlowQuery& query, const SharedSource& source, int, const Progress& progress) {
+SharedGeometry makeDrawn(const FlowQuery& query, const SharedSource& source, volume::SpaceTimeSurfaces&, int&,
+                         const Progress& progress) {
     const vis::DoiFunction interest(query.brushes, query.lenses);
     if (vis::followsParticles(query.layer.kind))
         return vis::makeParticles(*source, query.layer, volume::timeAt(source->info().times, query.time), query.stretch,
@@ -104,7 +176,8 @@ SharedGeometry makeDrawn(const FlowQuery& query, const SharedSource& source, int
     return vis::makeFlow(*shown.source, query.layer, shown.time, query.stretch, progress, &interest);
 }
 
-SharedGeometry makeDrawn(const GlyphQuery& query, const SharedSource& source, int, const Progress& progress) {
+SharedGeometry makeDrawn(const GlyphQuery& query, const SharedSource& source, volume::SpaceTimeSurfaces&, int&,
+                         const Progress& progress) {
     const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
     const vis::DoiFunction interest(query.brushes, query.lenses);
     const vis::GlyphMoment moment{shown.time, query.stretch, query.cursor,
@@ -119,8 +192,13 @@ vis::GeometryLayer drawnAs(const vis::Layer& layer, const GeometryQuery& made) {
     drawn.transfer = layer.transfer;
     drawn.brushes = layer.brushes;
     if (const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique)) {
-        drawn.style = {.color = iso->color, .opacity = iso->opacity, .cutByBox = true, .look = iso->look};
-        if (const auto* surface = std::get_if<SurfaceQuery>(&made); surface && surface->colorBy >= 0)
+        const bool grey = iso->strokes.grey && !iso->strokes.vector.empty();
+        drawn.style = {.color = grey ? kStrokesGround : iso->color,
+                       .opacity = iso->opacity,
+                       .strokes = iso->strokes.strength,
+                       .cutByBox = true,
+                       .look = iso->look};
+        if (const auto* surface = std::get_if<SurfaceQuery>(&made); surface && surface->colorBy >= 0 && !grey)
             drawn.channel = iso->colorBy;
     }
     if (const auto* flow = std::get_if<vis::FlowLayer>(&layer.technique)) {
@@ -142,6 +220,8 @@ AsyncOptions optionsFor(const vis::Layer& layer, const std::string& place, const
     if (!std::holds_alternative<vis::IsoLayer>(layer.technique)) return options;
     options.title = "Surface of " + shownChannel(layer.technique);
     options.firstLevel = source.grid().levelWithin(kCoarseSamples);
+    const bool strokes = !std::get<vis::IsoLayer>(layer.technique).strokes.vector.empty();
+    if (strokes && options.firstLevel == 0 && source.grid().levels > 1) options.firstLevel = 1;
     options.quiet = options.firstLevel == 0;
     return options;
 }
@@ -152,7 +232,8 @@ std::shared_ptr<const vis::Geometry> extractLayer(const std::shared_ptr<const vo
                                                   const vis::IsoLayer& layer, const volume::TimePair& time, int level,
                                                   const Progress& progress) {
     const std::optional<SurfaceQuery> query = surfaceQuery(layer, source->info(), time);
-    return query ? make(*query, source, level, progress) : nullptr;
+    volume::SpaceTimeSurfaces inTime;
+    return query ? make(*query, source, Surroundings::Space, inTime, level, progress) : nullptr;
 }
 
 AsyncGeometry::Query::Keep AsyncGeometry::keep() {
@@ -173,12 +254,14 @@ std::vector<vis::GeometryLayer> AsyncGeometry::get(ViewContext& context, const s
     for (std::size_t i = 0; i < context.session.layers.size(); ++i) {
         const vis::Layer& layer = context.session.layers[i];
         if (!layer.visible) continue;
-        const auto query = queryOf(layer, context.session, context.source->info());
+        const auto query = queryOf(layer, context.session, context.source->info(), context.origin.spaceOfPlane);
         if (!query) continue;
         auto made = query_.answer(
             context, context.source, optionsFor(layer, pane + ":geometry" + std::to_string(i), *context.source), *query,
-            [](const SharedSource& source, const GeometryQuery& asked, int level, const Progress& progress) {
-                return std::visit([&](const auto& of) { return makeDrawn(of, source, level, progress); }, asked);
+            [inTime = inTime_](const SharedSource& source, const GeometryQuery& asked, int& level,
+                               const Progress& progress) {
+                return std::visit([&](const auto& of) { return makeDrawn(of, source, *inTime, level, progress); },
+                                  asked);
             },
             [](const GeometryQuery& former, const GeometryQuery& asked) { return former.index() == asked.index(); });
         if (!made || !made->result || (!query_.failure().empty() && !(made->query == *query))) continue;

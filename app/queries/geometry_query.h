@@ -2,6 +2,7 @@
 
 #include "app/queries/async_query.h"
 #include "volume/field/time_pair.h"
+#include "volume/four/space_time_surfaces.h"
 
 #include <memory>
 #include <string>
@@ -18,6 +19,12 @@ struct SurfaceQuery {
     int channel = 0, colorBy = -1; ///< colorBy: of the values at the vertices, -1 for none
     volume::TimePair time;
     double value = 0;
+    bool spaceTime = false; ///< cut from the surface in space and time
+    /// Of a plane in space and time: the data that it is cut from, and the parameter there.
+    std::shared_ptr<const volume::BrickSource> space = {};
+    int spaceChannel = -1;
+    vis::Strokes strokes = {};
+    glm::dvec3 stretch{1}; ///< where there are strokes, else 1
     bool operator==(const SurfaceQuery&) const = default;
 };
 
@@ -55,6 +62,8 @@ private:
     using Query = AsyncQuery<GeometryQuery, std::shared_ptr<const vis::Geometry>>;
     static Query::Keep keep();
     Query query_{keep()};
+    /// Of jobs, too, which may outlive this.
+    std::shared_ptr<volume::SpaceTimeSurfaces> inTime_ = std::make_shared<volume::SpaceTimeSurfaces>();
 };
 
 /// The surface of an iso-layer at a level of detail, with the values of its colouring parameter at the vertices.

@@ -35,11 +35,39 @@ double resolutionOf(const std::vector<double>& times) {
     return least / 10;
 }
 
+/// Times as texts with their unit, whose resolution is that of all times of the data.
+class TimeValues {
+public:
+    explicit TimeValues(const volume::DatasetInfo& info) : info_(info), resolution_(resolutionOf(info.times)) {}
+    std::string text(double time) const {
+        const bool between = volume::timesAround(info_.times, time).between();
+        return formatQuantity(time, info_.timeUnit, resolution_ / (between ? 10 : 1));
+    }
+    /// With the word for the axis of times.
+    std::string withWord(double time) const {
+        const std::string word = timeWord(info_);
+        return word + (word == "t" ? " = " : " ") + text(time);
+    }
+
+private:
+    const volume::DatasetInfo& info_;
+    double resolution_;
+};
+
+/// The value of a quantity at or between stored times, with its unit; "" where it is not known.
+std::string quantityText(const volume::Quantity& quantity, const volume::TimePair& at) {
+    const double earlier = quantity.values[std::size_t(at.earlier)];
+    const double value =
+        at.between() ? (1 - at.weight) * earlier + at.weight * quantity.values[std::size_t(at.later)] : earlier;
+    if (!std::isfinite(value)) return {};
+    return quantity.unit.empty() ? quantity.name + " " + groupedNumber(value)
+                                 : groupedNumber(value) + " " + prettyUnit(quantity.unit);
+}
+
 } // namespace
 
 std::string timeValueText(const volume::DatasetInfo& info, double time) {
-    const bool between = volume::timesAround(info.times, time).between();
-    return formatQuantity(time, info.timeUnit, resolutionOf(info.times) / (between ? 10 : 1));
+    return TimeValues(info).text(time);
 }
 
 std::string timeWord(const volume::DatasetInfo& info) {
@@ -47,8 +75,7 @@ std::string timeWord(const volume::DatasetInfo& info) {
 }
 
 std::string timeText(const volume::DatasetInfo& info, double time) {
-    const std::string word = timeWord(info);
-    return word + (word == "t" ? " = " : " ") + timeValueText(info, time);
+    return TimeValues(info).withWord(time);
 }
 
 std::string timeTitle(const volume::DatasetInfo& info) {
@@ -73,14 +100,10 @@ std::string quantitiesText(const volume::DatasetInfo& info, double time, std::st
     std::string text;
     std::size_t shown = 0;
     for (const volume::Quantity* quantity : order) {
-        const double earlier = quantity->values[std::size_t(at.earlier)];
-        const double value =
-            at.between() ? (1 - at.weight) * earlier + at.weight * quantity->values[std::size_t(at.later)] : earlier;
-        if (!std::isfinite(value)) continue;
+        const std::string own = quantityText(*quantity, at);
+        if (own.empty()) continue;
         if (shown++ == most) return text + ", ...";
-        if (!text.empty()) text += ", ";
-        text += quantity->unit.empty() ? quantity->name + " " + groupedNumber(value)
-                                       : groupedNumber(value) + " " + prettyUnit(quantity->unit);
+        text += (text.empty() ? "" : ", ") + own;
     }
     return text;
 }
@@ -88,20 +111,17 @@ std::string quantitiesText(const volume::DatasetInfo& info, double time, std::st
 std::vector<std::string> stateNames(const volume::DatasetInfo& info, const std::vector<double>& times) {
     const bool clock = timeWord(info) == "t";
     std::vector<std::string> own, chosen;
-    for (const double time : times)
-        own.push_back(info.timeUnit.empty() ? timeText(info, time) : timeValueText(info, time));
+    const TimeValues values(info);
+    for (const double time : times) own.push_back(info.timeUnit.empty() ? values.withWord(time) : values.text(time));
     if (!clock && !info.timeUnit.empty()) return own;
     bool distinct = false;
     for (const volume::Quantity& quantity : info.quantities) {
-        if (quantity.unit.empty()) continue;
-        volume::DatasetInfo alone;
-        alone.times = info.times;
-        alone.quantities = {quantity};
+        if (quantity.unit.empty() || !chosen.empty()) continue;
         std::vector<std::string> names;
-        for (const double time : times) names.push_back(quantitiesText(alone, time));
+        for (const double time : times) names.push_back(quantityText(quantity, volume::timesAround(info.times, time)));
         const std::set<std::string> different(names.begin(), names.end());
         const bool all = different.size() == names.size();
-        if (!chosen.empty() || different.contains("") || !(all || clock)) continue;
+        if (different.contains("") || !(all || clock)) continue;
         chosen = names;
         distinct = all;
     }

@@ -19,15 +19,15 @@ constexpr double kAlmost = 1.1; ///< of the picture: a box whose corners alone a
 constexpr double kLeastCovered = 0.6; ///< of the picture: a smaller box was fitted to another pane
 
 /// The window, in pixels, and its pixels per design pixel.
-struct Window {
+struct WindowNow {
     ImVec2 size;
     float scale = 1;
 };
-Window windowNow(float scale) {
+WindowNow windowNow(float scale) {
     return {ImGui::GetMainViewport()->Size, scale};
 }
 
-ImVec2 sizeIn(const Window& window, const Session& session, const DockNode& part) {
+ImVec2 sizeIn(const WindowNow& window, const Session& session, const DockNode& part) {
     DockTree tree = session.dock;
     const WindowBars bars = windowBars();
     const ImVec2 whole{window.size.x, std::max(1.0f, window.size.y - bars.menu - bars.status)};
@@ -51,7 +51,7 @@ ImVec2 sizeIn(const Window& window, const Session& session, const DockNode& part
 }
 
 /// Size of a pane, below its tab.
-ImVec2 paneSize(const Window& window, const Session& session, const std::string& pane) {
+ImVec2 paneSize(const WindowNow& window, const Session& session, const std::string& pane) {
     DockNode stack;
     stack.id = stackWith(session.dock.root, pane);
     const ImVec2 size = sizeIn(window, session, stack);
@@ -59,7 +59,7 @@ ImVec2 paneSize(const Window& window, const Session& session, const std::string&
 }
 
 /// Width by height of the picture in a pane.
-double aspectOf(const Window& window, const Session& session, const std::string& pane) {
+double aspectOf(const WindowNow& window, const Session& session, const std::string& pane) {
     const ImVec2 size = paneSize(window, session, pane);
     return double(size.x) / double(size.y);
 }
@@ -109,7 +109,7 @@ bool seesWholeBox(const Session& session, const std::string& pane, const vis::Wo
 }
 
 void showWholeBox(Session& session, const volume::DatasetInfo& info, float scale, float next) {
-    Window window = windowNow(scale);
+    WindowNow window = windowNow(scale);
     if (window.size.x <= 0 || window.size.y <= 0 || scale <= 0) return;
     // Text and bars are still drawn at the old scale: the window is measured in what will be its pixels.
     window.size = {window.size.x * scale / next, window.size.y * scale / next};

@@ -81,7 +81,7 @@ void PaneHost::draw(const ViewContext& frame, const Area& area) {
     int renderers = 1;
     for (const auto& [pane, cache] : caches_) renderers += cache->renderers();
     idle_ = !working_;
-    busy_ = hurries_ = working_ = compiling_ = false;
+    busy_ = hurries_ = working_ = compiling_ = behind_ = false;
     hovered_.clear();
     drawn_.clear();
     DockPanes panes;
@@ -160,6 +160,7 @@ void PaneHost::drawPane(const ViewContext& frame, const std::string& pane, int r
     busy_ = busy_ || context.answers.unfinished() || context.answers.postponed;
     hurries_ = hurries_ || context.answers.busy || (context.answers.postponed && context.idle);
     compiling_ = compiling_ || context.answers.compiling;
+    behind_ = behind_ || context.answers.behind;
     if (paneDrawn) paneDrawn(pane, context.answers.behind);
 }
 

@@ -62,6 +62,7 @@ public:
     bool busy() const { return busy_; }
     bool hurries() const { return hurries_; } ///< a view needs the next frame at once
     bool compiling() const { return compiling_; }
+    bool behind() const { return behind_; } ///< a view shows an older state of the session
     /// Failures of views since the last call.
     std::vector<std::string> takeMessages() { return std::exchange(messages_, {}); }
 
@@ -80,7 +81,7 @@ private:
     std::set<std::string> drawn_, last_; ///< panes of the frame being drawn, and of the last
     std::string cameraPane_;             ///< the target of cameraKey_
     int cameraKey_ = 0;                  ///< key of a camera command, 0 = none
-    bool busy_ = true, hurries_ = true, compiling_ = false;
+    bool busy_ = true, hurries_ = true, compiling_ = false, behind_ = false;
     bool working_ = true, idle_ = false; ///< a view is unfinished, but for work that can wait; none was
     std::vector<std::string> messages_;
 };

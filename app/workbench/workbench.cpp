@@ -78,6 +78,7 @@ void Workbench::requestQuit() {
 }
 
 void Workbench::frame() {
+    frameBegan_ = now();
     for (const std::string& text : jobs_.collect()) message(text, true);
     for (const std::string& text : renderer_->takeMessages()) message(text, true);
     if (const auto run = std::exchange(chosen_, nullptr)) run();
@@ -261,7 +262,7 @@ void Workbench::drawDialogs() {
 void Workbench::play() {
     if (!document_.loaded() || !session().animation.playing) return;
     busy_ = hurries_ = true;
-    if (!panes_.plays(session())) document_.play(double(ImGui::GetIO().DeltaTime));
+    if (!panes_.plays(session())) document_.play(double(ImGui::GetIO().DeltaTime), panes_.behind());
 }
 
 void Workbench::afterFrame() {
@@ -280,10 +281,12 @@ double Workbench::idleSeconds() const {
     // Jobs and samples wake the platform, programs come without a word. Frames meanwhile would take time from what is
     // waited for, above all where the processor draws them.
     constexpr double kLook = 0.02, kWoken = 0.25;
+    constexpr double kRarest = 0.5, kShare = 0.1; // of frames that tell only how far jobs are: seconds, share of time
     if (hurries_ || picture_ || chosen_ || history().pending()) return 0;
     double wait = messages_.secondsToChange();
     if (busy_) wait = std::min(wait, panes_.compiling() || !options_.wake ? kLook : kWoken);
-    for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? 0.25 : 0.1);
+    const double progress = std::clamp((now() - frameBegan_) * (1 / kShare - 1), 0.1, kRarest);
+    for (const Jobs::Status& job : jobs_.list()) wait = std::min(wait, job.quiet ? kWoken : progress);
     if (autosaver_) wait = std::min(wait, autosaver_->secondsToNext(document_, now()));
     return wait;
 }

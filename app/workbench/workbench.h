@@ -174,6 +174,7 @@ private:
 
     std::optional<PictureJob> picture_;
     bool quit_ = false, busy_ = true, hurries_ = true;
+    double frameBegan_ = 0;   ///< the last one
     double typed_ = -1e9;     ///< when a key was last pressed in a field of text
     bool popupShown_ = false; ///< at the start of the last frame
     Jobs jobs_;               ///< last: its threads end before what they refer to

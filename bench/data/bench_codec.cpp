@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <ctime>
+#include <map>
+#include <memory>
+#include <tuple>
 #include <utility>
 
 namespace tessera::app {
@@ -71,7 +74,45 @@ void measure(const std::string& name, volume::Dataset dataset, BenchTable& table
     }
 }
 
+/// Packing within an error bound, of frames in memory.
+void measureBounded(const std::string& name, volume::Dataset dataset, codec::StoredLattice lattice, double maxError,
+                    BenchTable& table) {
+    double bytes = 0;
+    std::map<std::tuple<int, int, int>, volume::Field> fields;
+    forFrames(dataset.info, [&](int p, int c, int t) {
+        volume::Field& field = fields[{p, c, t}] = dataset.read(p, c, t);
+        bytes += double(field.samples.size());
+    });
+    dataset.read = [shared = std::make_shared<const decltype(fields)>(std::move(fields))](int p, int c, int t) {
+        return shared->at({p, c, t});
+    };
+    const BenchFile file;
+    codec::PackOptions options;
+    options.lattice = lattice;
+    options.lossless = false;
+    options.maxError = maxError;
+    codec::PackSummary summary;
+    const double seconds = cpuSeconds([&] { summary = codec::pack(dataset, options, file.path); });
+    table.rows.push_back({name, lattice == codec::StoredLattice::CC ? "CC" : "BCC", decimals(maxError, 3),
+                          decimals(bytes / 1e6, 2), decimals(double(summary.archiveBytes) / 1e3, 1),
+                          decimals(bytes / double(summary.archiveBytes), 2), decimals(seconds, 2),
+                          decimals(bytes / 1e6 / seconds, 1)});
+}
+
 } // namespace
+
+BenchTable benchBounded() {
+    BenchTable table;
+    table.name = "codec: within an error bound";
+    table.columns = {"data", "lattice", "bound", "raw MB", "archive kB", "ratio", "pack CPU s", "pack MB/CPU s"};
+    const volume::Dataset cell = volume::makeModel("fuel-cell", {{"times", 6}, {"even", 1}});
+    for (const auto lattice : {codec::StoredLattice::CC, codec::StoredLattice::BCC})
+        measureBounded("fuel-cell, 6 times, parts", cell, lattice, 1e-3, table);
+    for (auto& [name, dataset] : volumeFiles())
+        if (dataset.info.parameters[0].type == volume::ScalarType::F32)
+            measureBounded(name, std::move(dataset), codec::StoredLattice::CC, 1e-3, table);
+    return table;
+}
 
 BenchTable benchCodec() {
     BenchTable table;

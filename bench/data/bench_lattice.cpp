@@ -89,11 +89,13 @@ BenchTable benchLattice() {
     const LatticeRow rows[] = {
         {"CC trilinear", LatticeKind::CC, 1, LatticeFilter::Linear},
         {"CC quasi", LatticeKind::CC, 1, LatticeFilter::Quasi},
+        {"CC cubic", LatticeKind::CC, 1, LatticeFilter::Cubic},
         {"BCC average", LatticeKind::BCC, sparse, LatticeFilter::Linear},
         {"BCC quasi", LatticeKind::BCC, sparse, LatticeFilter::Quasi},
         {"BCC tetrahedral", LatticeKind::BCC, sparse, LatticeFilter::Tetrahedral},
         {"BCC cosine", LatticeKind::BCC, sparse, LatticeFilter::Cosine},
         {"BCC quintic box", LatticeKind::BCC, sparse, LatticeFilter::Quintic},
+        {"BCC cubic", LatticeKind::BCC, sparse, LatticeFilter::Cubic},
         {"BCC quasi, resampled from CC", LatticeKind::BCC, sparse, LatticeFilter::Resampled},
         {"BCC quasi, of CC with one step (pictures)", LatticeKind::BCC, sparse, LatticeFilter::Corrected},
         {"BCC average", LatticeKind::BCC, equal, LatticeFilter::Linear},

@@ -385,8 +385,9 @@ FileRange ArchiveWriter::addPart(std::span<const std::byte> bytes, std::uint32_t
     return range;
 }
 
-void ArchiveWriter::commit(const Metadata& metadata, std::size_t times) {
-    const auto page = impl_->commits.commit(impl_->file, impl_->page, metadata, times, false);
+void ArchiveWriter::commit(std::size_t times, const std::function<Metadata()>& metadata) {
+    if (impl_->commits.waits(impl_->file)) return;
+    const auto page = impl_->commits.commit(impl_->file, impl_->page, metadata(), times, false);
     if (page) add(*page, impl_->known);
 }
 

@@ -9,6 +9,7 @@
 #include "volume/base/progress.h"
 #include "volume/bricks/brick_importance.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -51,8 +52,9 @@ public:
                                    const FrameSamples* unrounded = nullptr, const FrameSamples* parts = nullptr);
 
     /// Makes the first `times` times of the metadata readable; all their frames must have been added. A commit rewrites
-    /// the metadata (with the ranges known so far), so it is delayed until the additions are 64 times as large.
-    void commit(const Metadata& metadata, std::size_t times);
+    /// the metadata (with the ranges known so far), so it is delayed until the additions are 64 times as large;
+    /// `metadata` is called only when they may be.
+    void commit(std::size_t times, const std::function<Metadata()>& metadata);
 
     /// The archive as it would be if it were committed now, described by `metadata`; all its frames must have been
     /// added.

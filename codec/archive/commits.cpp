@@ -7,12 +7,17 @@
 
 namespace tessera::codec {
 
+bool Commits::waits(const GrowingFile& file) const {
+    constexpr std::size_t kWorthwhile = 64, kPage = 256; // multiples of the bytes that a commit costs, including a page
+    const std::uint64_t last = std::max(header.fileSize, kFirstChunk);
+    return file.position() - last < kWorthwhile * (textBytes + kPage);
+}
+
 std::optional<IndexPage> Commits::commit(GrowingFile& file, IndexPage& page, const Metadata& now,
                                          std::size_t wholeTimes, bool always) {
-    constexpr std::size_t kWorthwhile = 64, kPage = 256; // multiples of the bytes that a commit costs, including a page
     Bytes text = serialise(now, header.features);
-    const std::uint64_t last = std::max(header.fileSize, kFirstChunk);
-    if (!always && file.position() - last < kWorthwhile * (text.size() + kPage)) return std::nullopt;
+    textBytes = text.size();
+    if (!always && waits(file)) return std::nullopt;
     if (page.frames.empty() && text == metadata) return std::nullopt;
     const std::vector<double>& all = now.info.times;
     page.times.assign(all.begin() + std::ptrdiff_t(times), all.begin() + std::ptrdiff_t(wholeTimes));

@@ -15,6 +15,11 @@ struct Commits {
     Bytes metadata;              ///< serialised
     std::size_t times = 0;       ///< that are readable
     std::uint64_t pageBytes = 0; ///< of all pages so far, decompressed
+    std::size_t textBytes = 0;   ///< of the metadata when they were last serialised
+
+    /// Whether the additions to `file` are too small for a commit, unless the metadata have become shorter: so that
+    /// these need be neither gathered nor serialised after every time.
+    bool waits(const GrowingFile& file) const;
 
     /// Makes the additions in `page`, whose chunks have been appended to `file`, readable: appends the metadata if it
     /// has changed and the page, and writes the headers. `wholeTimes`: number of times of the metadata that are

@@ -239,7 +239,7 @@ void Packing::addStep(ArchiveWriter& writer, QueuedFrames fed, const Progress& p
     const std::size_t wholeTimes = place_.firstTime + fed.time + 1, least = metadata_.alternating ? 2 : 1;
     if (p + 1 < dataset_.info.parameters.size() || !place_.wholeTimes || wholeTimes < least || !writes()) return;
     Stopwatch write(summary_.writeSeconds);
-    writer.commit(soFar(wholeTimes), wholeTimes);
+    writer.commit(wholeTimes, [&] { return soFar(wholeTimes); });
 }
 
 std::vector<SizeAtBound> Packing::estimate(const Progress& progress) {

@@ -1,6 +1,7 @@
 #include "codec/wavelet/lifting.h"
 
 #include "codec/wavelet/filter.h"
+#include "codec/wavelet/lift_rows.h"
 
 #include <algorithm>
 #include <array>
@@ -15,18 +16,6 @@ namespace tessera::codec {
 
 namespace {
 
-/// Parallel lines: `rows` samples along the line, `lanes` lines, row by row.
-struct Rows {
-    std::uint32_t* values;
-    std::uint8_t* present; ///< null: all present
-    int rows, lanes;
-
-    std::uint32_t at(int row, int lane) const { return values[std::ptrdiff_t(row) * lanes + lane]; }
-    bool has(int row, int lane) const {
-        return row >= 0 && row < rows && (!present || present[std::ptrdiff_t(row) * lanes + lane] != 0);
-    }
-};
-
 /// floor(x / 2^shift) of a 32-bit value modulo 2^32.
 std::uint32_t shiftDown(std::uint32_t x, int shift) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(x) >> shift);
@@ -36,38 +25,17 @@ std::int64_t wide(std::uint32_t x) {
     return static_cast<std::int32_t>(x);
 }
 
-/// The weighted sum of a step at one sample, with the rules for absent taps. Predict: pair j is (row - j, row + 1 + j);
-/// update: (row - 1 - j, row + j); antisymmetric update: (row - 1 - j, row + 1 + j).
-std::uint32_t tapSum(const LiftStep& step, bool update, const Rows& target, const Rows& source, int row, int lane) {
-    std::int64_t sum = 0;
-    if (step.centre != 0) {
-        if (!source.has(row, lane)) return 0;
-        sum = step.centre * wide(source.at(row, lane));
-    }
-    std::uint32_t left = 0, right = 0;
+/// The sum of a step that is not one of pairs (isOfPairs) at one sample, with the rules for absent taps. An update has
+/// the antisymmetric pairs (row - 1 - j, row + 1 + j).
+std::uint32_t tapSum(const LiftStep& step, const Rows& target, const Rows& source, int row, int lane) {
+    if (!source.has(row, lane)) return 0;
+    std::int64_t sum = step.centre * wide(source.at(row, lane));
+    // Only details predicted from all their even neighbours.
+    const auto usable = [&](int at) { return source.has(at, lane) && target.has(at, lane); };
     for (int j = 0; j < step.pairs; ++j) {
-        const int l = update ? row - 1 - j : row - j;
-        const int r = update && !step.antisymmetric ? row + j : row + 1 + j;
-        bool hasLeft = source.has(l, lane), hasRight = source.has(r, lane);
-        if (update) { // only details predicted from all their even neighbours
-            hasLeft = hasLeft && target.has(l, lane) && (step.antisymmetric || target.has(l + 1, lane));
-            hasRight = hasRight && target.has(r, lane) && (step.antisymmetric || target.has(r + 1, lane));
-        }
-        if (hasLeft && hasRight) {
-            left = source.at(l, lane), right = source.at(r, lane);
-        } else if (step.antisymmetric) {
-            break;
-        } else if (j == 0) {
-            if (!hasLeft && !hasRight) return 0;
-            left = right = source.at(hasLeft ? l : r, lane);
-        } else {
-            // An incomplete pair and all further out take the values of the pair inside.
-            int rest = 0;
-            for (int k = j; k < step.pairs; ++k) rest += step.weight[std::size_t(k)];
-            sum += rest * (wide(left) + wide(right));
-            break;
-        }
-        sum += step.weight[std::size_t(j)] * (step.antisymmetric ? wide(right) - wide(left) : wide(left) + wide(right));
+        const int left = row - 1 - j, right = row + 1 + j;
+        if (!usable(left) || !usable(right)) break;
+        sum += step.weight[std::size_t(j)] * (wide(source.at(right, lane)) - wide(source.at(left, lane)));
     }
     const std::int64_t half = step.shift > 0 ? std::int64_t(1) << (step.shift - 1) : 0;
     return static_cast<std::uint32_t>((sum + half) >> step.shift);
@@ -86,83 +54,30 @@ std::uint32_t floatPrediction(const LiftStep& step, const Rows& source, int row,
     return floatMean(source.at(left ? row : row + 1, lane), source.at(right ? row + 1 : row, lane));
 }
 
-/// Sums of symmetric pairs of rows without absent samples, in loops that compilers vectorise.
-template <class Sum>
-void applyPairs(const LiftStep& step, bool update, const Rows& target, const Rows& source, std::uint32_t sign) {
-    const int sources = update ? usableDetails(step.pairs, target.rows, source.rows) : source.rows;
-    using Modulo = std::make_unsigned_t<Sum>;
-    const Modulo half = Modulo(1) << (step.shift - 1);
-    const auto weightOf = [&](std::size_t j) { return static_cast<Modulo>(static_cast<Sum>(step.weight[j])); };
-    const auto pairOf = [](std::int32_t a, std::int32_t b) {
-        return static_cast<Modulo>(Sum(a)) + static_cast<Modulo>(Sum(b));
-    };
-    for (int row = 0; row < target.rows; ++row) {
-        const Pairs pairs = pairsAt(row, step.pairs, sources, update);
-        if (pairs.none) continue;
-        const auto rowOf = [&](int i) { return source.values + std::ptrdiff_t(i) * source.lanes; };
-        const auto* left = reinterpret_cast<const std::int32_t*>(rowOf(pairs.left[0]));
-        const auto* right = reinterpret_cast<const std::int32_t*>(rowOf(pairs.right[0]));
-        const bool two = step.pairs > 1, three = step.pairs > 2;
-        const auto* left1 = two ? reinterpret_cast<const std::int32_t*>(rowOf(pairs.left[1])) : left;
-        const auto* right1 = two ? reinterpret_cast<const std::int32_t*>(rowOf(pairs.right[1])) : right;
-        const auto* left2 = three ? reinterpret_cast<const std::int32_t*>(rowOf(pairs.left[2])) : left;
-        const auto* right2 = three ? reinterpret_cast<const std::int32_t*>(rowOf(pairs.right[2])) : right;
-        const Modulo w0 = weightOf(0), w1 = two ? weightOf(1) : 0, w2 = three ? weightOf(2) : 0;
-        std::uint32_t* __restrict to = target.values + std::ptrdiff_t(row) * target.lanes;
-        for (int i = 0; i < target.lanes; ++i) {
-            const Modulo sum = w0 * pairOf(left[i], right[i]) + w1 * pairOf(left1[i], right1[i]) +
-                               w2 * pairOf(left2[i], right2[i]) + half;
-            to[i] += sign * static_cast<std::uint32_t>(static_cast<Sum>(sum) >> step.shift);
-        }
-    }
-}
-
 /// target[i] += sign * prediction(i), where sign is 1 or 2^32 - 1.
 void apply(const LiftStep& step, bool update, const Rows& target, const Rows& source, std::uint32_t sign,
-           Arithmetic arithmetic) {
+           Arithmetic arithmetic, std::vector<std::uint8_t>& usable, Cpu cpu) {
     const int lanes = target.lanes;
     const bool masked = target.present != nullptr;
-    if (!masked && arithmetic != Arithmetic::Float && step.centre == 0 && step.pairs > 1 && !step.antisymmetric)
-        return arithmetic == Arithmetic::Narrow ? applyPairs<std::int32_t>(step, update, target, source, sign)
-                                                : applyPairs<std::int64_t>(step, update, target, source, sign);
-    int begin = 0, end = 0; // rows already handled by the fast loops below
-    if (!masked && arithmetic != Arithmetic::Float) {
-        if (step.centre != 0 && step.pairs == 0) {
-            end = std::min(target.rows, source.rows);
-        } else if (step.centre == 0 && step.pairs == 1) {
-            begin = update ? 1 : 0;
-            end = update ? std::min(target.rows - 1, source.rows) : std::min(target.rows, source.rows - 1);
-        }
-        end = std::max(begin, end);
-        const std::size_t count = std::size_t(end - begin) * std::size_t(lanes);
-        std::uint32_t* t = target.values + std::ptrdiff_t(begin) * lanes;
-        if (step.centre != 0 && step.shift == 0) {
-            const std::uint32_t* s = source.values;
+    if (arithmetic != Arithmetic::Float && isOfPairs(step))
+        return applyPairs(step, update, target, source, sign, arithmetic == Arithmetic::Wide, usable, cpu);
+    int begin = 0; // rows already handled by the fast loops below
+    if (!masked && arithmetic != Arithmetic::Float && step.pairs == 0) {
+        begin = std::min(target.rows, source.rows);
+        const std::size_t count = std::size_t(begin) * std::size_t(lanes);
+        std::uint32_t* const t = target.values;
+        const std::uint32_t* const s = source.values;
+        if (step.shift == 0)
             for (std::size_t i = 0; i < count; ++i) t[i] += sign * s[i];
-        } else if (step.centre != 0 && step.pairs == 0) {
-            const std::uint32_t* s = source.values; // (d + 1) >> 1 without overflow
+        else // (d + 1) >> 1 without overflow
             for (std::size_t i = 0; i < count; ++i) t[i] += sign * (shiftDown(s[i], 1) + (s[i] & 1u));
-        } else if (step.pairs == 1 && count > 0) {
-            const std::uint32_t* l = source.values + std::ptrdiff_t(update ? begin - 1 : begin) * lanes;
-            const std::uint32_t* r = l + lanes;
-            if (step.shift == 1) { // ceil((l + r) / 2) without overflow
-                for (std::size_t i = 0; i < count; ++i) t[i] += sign * ((l[i] | r[i]) - shiftDown(l[i] ^ r[i], 1));
-            } else if (arithmetic == Arithmetic::Narrow) {
-                for (std::size_t i = 0; i < count; ++i) t[i] += sign * shiftDown(l[i] + r[i] + 2u, 2);
-            } else {
-                for (std::size_t i = 0; i < count; ++i)
-                    t[i] += sign * static_cast<std::uint32_t>((wide(l[i]) + wide(r[i]) + 2) >> 2);
-            }
-        }
     }
-    for (int row = 0; row < target.rows; ++row) {
-        if (row == begin && end > begin) row = end;
-        if (row >= target.rows) break;
+    for (int row = begin; row < target.rows; ++row) {
         std::uint32_t* t = target.values + std::ptrdiff_t(row) * lanes;
         for (int lane = 0; lane < lanes; ++lane) {
             if (masked && !target.has(row, lane)) continue;
             t[lane] += sign * (arithmetic == Arithmetic::Float ? floatPrediction(step, source, row, lane)
-                                                               : tapSum(step, update, target, source, row, lane));
+                                                               : tapSum(step, target, source, row, lane));
         }
     }
 }
@@ -196,8 +111,9 @@ template <bool toScratch, class T> void copyRows(T* lines, const Lines& shape, T
 }
 
 struct Scratch {
-    std::vector<std::uint32_t> values;
-    std::vector<std::uint8_t> present;
+    Cpu cpu;
+    std::vector<std::uint32_t> values{};
+    std::vector<std::uint8_t> present{}, usable{};
 };
 
 void liftLines(const Lines& lines, const LiftFilter& filter, Arithmetic arithmetic, bool isForward, Scratch& scratch) {
@@ -216,14 +132,15 @@ void liftLines(const Lines& lines, const LiftFilter& filter, Arithmetic arithmet
     copyRows<true>(lines.values, lines, values, isForward);
     const Rows even{values, present, evens, lines.lanes};
     const Rows odd{values + oddStart, present ? present + oddStart : nullptr, odds, lines.lanes};
+    const auto predict = [&](std::uint32_t sign) {
+        apply(filter.predict, false, odd, even, sign, arithmetic, scratch.usable, scratch.cpu);
+    };
+    const auto change = [&](std::uint32_t sign) {
+        if (filter.updates) apply(filter.update, true, even, odd, sign, arithmetic, scratch.usable, scratch.cpu);
+    };
     constexpr std::uint32_t plus = 1, minus = ~0u;
-    if (isForward) {
-        apply(filter.predict, false, odd, even, minus, arithmetic);
-        if (filter.updates) apply(filter.update, true, even, odd, plus, arithmetic);
-    } else {
-        if (filter.updates) apply(filter.update, true, even, odd, minus, arithmetic);
-        apply(filter.predict, false, odd, even, plus, arithmetic);
-    }
+    isForward ? predict(minus) : change(minus);
+    isForward ? change(plus) : predict(plus);
     copyRows<false>(lines.values, lines, values, !isForward);
     if (present) copyRows<false>(lines.present, lines, present, !isForward);
 }
@@ -278,32 +195,32 @@ glm::ivec3 levelSize(glm::ivec3 size, int level) {
 }
 
 void forward(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
-             Wavelet wavelet, Arithmetic arithmetic) {
+             Wavelet wavelet, Arithmetic arithmetic, Cpu cpu) {
     const LiftFilter filter = filterOf(wavelet);
     assert(arithmetic != Arithmetic::Float || !filter.updates);
     const Block block{values.data(), present.empty() ? nullptr : present.data(), size};
-    Scratch scratch;
+    Scratch scratch{cpu};
     for (int step = 0; step < steps; ++step)
         for (int axis = 0; axis < 3; ++axis)
             liftAxis(block, levelSize(size, step), axis, filter, arithmetic, true, scratch);
 }
 
 void inverse(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
-             Wavelet wavelet, Arithmetic arithmetic) {
+             Wavelet wavelet, Arithmetic arithmetic, Cpu cpu) {
     const LiftFilter filter = filterOf(wavelet);
     assert(arithmetic != Arithmetic::Float || !filter.updates);
     const Block block{values.data(), present.empty() ? nullptr : present.data(), size};
-    Scratch scratch;
+    Scratch scratch{cpu};
     for (int step = steps - 1; step >= 0; --step)
         for (int axis = 2; axis >= 0; --axis)
             liftAxis(block, levelSize(size, step), axis, filter, arithmetic, false, scratch);
 }
 
 void liftAlong(int axis, bool isForward, std::uint32_t* values, std::uint8_t* present, glm::ivec3 size,
-               std::ptrdiff_t row, std::ptrdiff_t slice, Wavelet wavelet, Arithmetic arithmetic) {
+               std::ptrdiff_t row, std::ptrdiff_t slice, Wavelet wavelet, Arithmetic arithmetic, Cpu cpu) {
     assert(arithmetic != Arithmetic::Float);
     const LiftFilter filter = filterOf(wavelet);
-    Scratch scratch;
+    Scratch scratch{cpu};
     const bool alongZ = axis == 2;
     for (int i = 0; i < (alongZ ? size.y : size.z); ++i) {
         const std::ptrdiff_t at = i * (alongZ ? row : slice);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "codec/wavelet/wavelet.h"
+#include "volume/base/cpu.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -40,15 +41,15 @@ glm::ivec3 levelSize(glm::ivec3 size, int level);
 /// Non-standard decomposition: `steps` times along x, y and z of the remaining low corner, where coarse samples go.
 /// `values` and `present` (empty: all present) have size.x * size.y * size.z elements, x fastest, and are reordered
 /// together. Works for any size and any values; exactly inverted by `inverse` with the same arguments. With Float
-/// arithmetic the wavelet must have N~ = 0.
+/// arithmetic the wavelet must have N~ = 0. The result does not depend on `cpu`.
 void forward(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
-             Wavelet wavelet, Arithmetic arithmetic);
+             Wavelet wavelet, Arithmetic arithmetic, Cpu cpu = bestCpu());
 void inverse(std::span<std::uint32_t> values, std::span<std::uint8_t> present, glm::ivec3 size, int steps,
-             Wavelet wavelet, Arithmetic arithmetic);
+             Wavelet wavelet, Arithmetic arithmetic, Cpu cpu = bestCpu());
 /// One step along one axis of a box of `size` in rows `row` words apart and slices `slice` words apart, in place: even
 /// samples to the low half, or back. `present` has the same layout, or is null: all present. Not with Float arithmetic.
 void liftAlong(int axis, bool isForward, std::uint32_t* values, std::uint8_t* present, glm::ivec3 size,
-               std::ptrdiff_t row, std::ptrdiff_t slice, Wavelet wavelet, Arithmetic arithmetic);
+               std::ptrdiff_t row, std::ptrdiff_t slice, Wavelet wavelet, Arithmetic arithmetic, Cpu cpu = bestCpu());
 /// The reordering of `forward` alone, for masks.
 void deinterleave(std::span<std::uint8_t> present, glm::ivec3 size, int steps);
 

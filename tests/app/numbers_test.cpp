@@ -21,7 +21,7 @@
 namespace tessera::app {
 namespace {
 
-constexpr int kBins = 24, kTime = 1;
+constexpr int kCountBins = 24, kTime = 1;
 
 DataRef smallCell() {
     DataRef data;
@@ -105,7 +105,7 @@ Numbers read(const volume::BrickSource& source, std::shared_ptr<const volume::Br
     const std::vector<int> channels = channelsOf(info, ending);
     for (const int channel : channels) out.ranges.push_back(info.channelRange(info.channel(channel)));
     StatisticsResult result;
-    result.query = brushedQuery(brushed(info), info, channels, out.ranges, kBins, true);
+    result.query = brushedQuery(brushed(info), info, channels, out.ranges, kCountBins, true);
     result.brushed = true;
     result.statistics = readStatistics(shared, result.query, 0);
     out.statistics = result.statistics;
@@ -192,7 +192,7 @@ TEST(Numbers, OfOriginalsBesideWhatWasPacked) {
             query.ranges.push_back(range);
         }
         if (names.size() == 2) query.pairs = {{0, 1}};
-        query.bins = kBins;
+        query.bins = kCountBins;
         query.time = {kTime, kTime, 0};
         return readStatistics(sources.numbers, query, 0);
     };
@@ -244,9 +244,9 @@ TEST(Numbers, AreThoseOfTheSamplesAsComputed) {
     const auto& box = std::get<vis::SphereRegion>(selection.brushes[1].region);
     const auto& ranges = std::get<vis::RangeRegion>(selection.brushes[0].region).intervals;
     double n = 0, volume = 0, sum = 0, inside = 0;
-    std::vector<std::uint64_t> bins(kBins, 0), joint(kBins * kBins, 0);
+    std::vector<std::uint64_t> bins(kCountBins, 0), joint(kCountBins * kCountBins, 0);
     const auto binOf = [&](double value, const Range& range) {
-        return std::min(kBins - 1, int((value - range.lo) / (range.hi - range.lo) * kBins));
+        return std::min(kCountBins - 1, int((value - range.lo) / (range.hi - range.lo) * kCountBins));
     };
     double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0, pairs = 0;
     for (std::size_t i = 0; i < o2.size(); ++i) {
@@ -264,7 +264,7 @@ TEST(Numbers, AreThoseOfTheSamplesAsComputed) {
             o2[i] >= ranges[0].lo && o2[i] <= ranges[0].hi && t[i] >= ranges[1].lo && t[i] <= ranges[1].hi;
         if (brushedValue && distance < 1 - box.soft) ++inside; // wholly in focus
         if (std::isnan(h2o[i])) continue;
-        ++joint[std::size_t(binOf(h2o[i], found.ranges[1]) * kBins + binOf(o2[i], found.ranges[0]))];
+        ++joint[std::size_t(binOf(h2o[i], found.ranges[1]) * kCountBins + binOf(o2[i], found.ranges[0]))];
         const double a = o2[i], b = h2o[i];
         pairs += share;
         sa += share * a, sb += share * b, saa += share * a * a, sbb += share * b * b, sab += share * a * b;

@@ -8,7 +8,7 @@
 namespace tessera::app {
 namespace {
 
-constexpr int kBins = 24, kWidth = 31, kHeight = 200;
+constexpr int kGapBins = 24, kWidth = 31, kHeight = 200;
 constexpr PlaceRows kLeft{160, false, 175, 195}, kRight{160, true, 175, 195};
 
 /// A sample: shares of both axes, below 0 where absent.
@@ -29,10 +29,10 @@ std::vector<Line> someLines(int count) {
 }
 
 volume::PlaceCounts counted(const std::vector<Line>& lines) {
-    const std::size_t places = volume::placesOf(kBins);
+    const std::size_t places = volume::placesOf(kGapBins);
     volume::PlaceCounts out{std::vector<std::uint64_t>(places * places), {std::vector<double>(places * places)}};
     const auto place = [](double share) {
-        return std::size_t(share < 0 ? volume::absentPlace(kBins) : int(share * kBins));
+        return std::size_t(share < 0 ? volume::absentPlace(kGapBins) : int(share * kGapBins));
     };
     for (const Line& line : lines) {
         const std::size_t at = place(line.left) * places + place(line.right);
@@ -50,7 +50,7 @@ double rowOn(const PlaceRows& rows, double share) {
 
 TEST(GapRaster, EveryColumnHoldsAllSamplesAtTheirRows) {
     const std::vector<Line> lines = someLines(3000);
-    const GapDensity density = rasterGap(counted(lines), kBins, kLeft, kRight, kWidth, kHeight);
+    const GapDensity density = rasterGap(counted(lines), kGapBins, kLeft, kRight, kWidth, kHeight);
     double shown = 0, focus = 0;
     for (const Line& line : lines)
         if (line.left >= 0 || line.right >= 0) ++shown, focus += line.focus ? 0.5 : 0;
@@ -109,16 +109,18 @@ TEST(GapRaster, BinsThinnerThanARowAreDrawnTogether) {
     EXPECT_EQ(binsTogether(512, 100), 6);
     EXPECT_EQ(binsTogether(512, 0), 512);
     const volume::PlaceCounts counts = counted(someLines(3000));
-    const std::size_t places = volume::placesOf(kBins), half = volume::placesOf(kBins / 2);
+    const std::size_t places = volume::placesOf(kGapBins), half = volume::placesOf(kGapBins / 2);
     volume::PlaceCounts joined{std::vector<std::uint64_t>(half * half), {std::vector<double>(half * half)}};
-    const auto place = [](std::size_t of) { return of < std::size_t(kBins) ? of / 2 : of - std::size_t(kBins) / 2; };
+    const auto place = [](std::size_t of) {
+        return of < std::size_t(kGapBins) ? of / 2 : of - std::size_t(kGapBins) / 2;
+    };
     for (std::size_t i = 0; i < counts.all.size(); ++i) {
         const std::size_t to = place(i / places) * half + place(i % places);
         joined.all[to] += counts.all[i], joined.selected[0][to] += counts.selected[0][i];
     }
     const PlaceRows left{12, false, 14, 16}, right{12, true, 14, 16}; // a row for two bins
-    const GapDensity found = rasterGap(counts, kBins, left, right, 7, 16);
-    const GapDensity wanted = rasterGap(joined, kBins / 2, left, right, 7, 16);
+    const GapDensity found = rasterGap(counts, kGapBins, left, right, 7, 16);
+    const GapDensity wanted = rasterGap(joined, kGapBins / 2, left, right, 7, 16);
     for (std::size_t i = 0; i < wanted.all.size(); ++i) {
         EXPECT_NEAR(found.all[i], wanted.all[i], 1e-9) << i;
         EXPECT_NEAR(found.selected[0][i], wanted.selected[0][i], 1e-9) << i;
@@ -134,7 +136,7 @@ TEST(GapRaster, JoinedBinsKeepAllSamples) {
     for (const double rows : {10.0, 5.0, 3.5, 1.0}) { // 24 bins by 3, 5, 7 and 24: some leave a rest
         const PlaceRows left{rows, false, rows + 1, rows + 3}, right{rows, true, rows + 1, rows + 3};
         const int height = int(rows) + 4;
-        const GapDensity density = rasterGap(counts, kBins, left, right, 5, height);
+        const GapDensity density = rasterGap(counts, kGapBins, left, right, 5, height);
         for (int column = 0; column < 5; ++column) {
             double sum = 0, selected = 0;
             for (int row = 0; row < height; ++row) {

@@ -10,6 +10,7 @@
 #include "codec/pack/pack.h"
 #include "tests/app/views_fixture.h"
 #include "volume/reconstruct/probe.h"
+#include "volume/sources/memory_source.h"
 #include "volume/sources/plane_source.h"
 
 #include <atomic>
@@ -391,6 +392,137 @@ TEST_F(AsyncQueries, CancelledSurfaceWaitsForAnotherQuery) {
     finish(get);
     ViewContext now = context();
     EXPECT_EQ(get(now).size(), 1u);
+}
+
+/// A ball in four dimensions of radius 0.8, f = 0, as a cube of 32 samples at 32 times, with a vector U.
+std::shared_ptr<const volume::BrickSource> hypersphere() {
+    volume::Dataset data;
+    data.info.name = "hypersphere";
+    data.info.lattice.size = glm::ivec3(32);
+    data.info.lattice.spacing = glm::dvec3(2.0 / 31);
+    data.info.lattice.origin = glm::dvec3(-1);
+    data.info.bounds = {glm::dvec3(-1), glm::dvec3(1)};
+    data.info.times.clear();
+    for (int i = 0; i < 32; ++i) data.info.times.push_back(-1 + i * (2.0 / 31));
+    data.info.parameters.resize(2);
+    data.info.parameters[0].name = "f";
+    data.info.parameters[0].ranges = {{-1.2, 0.8}};
+    data.info.parameters[1].name = "U";
+    data.info.parameters[1].components = 3;
+    data.info.parameters[1].ranges = {{0, 1}, {0, 0}, {0, 0}, {0, 1}};
+    data.read = [info = data.info](int parameter, int component, int time) {
+        volume::Field field = volume::makeField(info.lattice, volume::ScalarType::F32);
+        const double t = info.times[std::size_t(time)];
+        std::size_t index = 0;
+        for (int k = 0; k < 32; ++k)
+            for (int j = 0; j < 32; ++j)
+                for (int i = 0; i < 32; ++i) {
+                    const glm::dvec3 p = info.lattice.position({i, j, k});
+                    const double value = parameter == 0 ? 0.8 - std::sqrt(glm::dot(p, p) + t * t) : component == 0;
+                    field.as<float>()[index++] = float(value);
+                }
+        return field;
+    };
+    return volume::makeMemorySource(std::move(data), {});
+}
+
+double volumeWithin(const volume::SurfaceMesh& mesh) {
+    double volume = 0;
+    for (const glm::uvec3& t : mesh.triangles) {
+        const auto at = [&](int i) { return mesh.origin + glm::dvec3(mesh.positions[t[i]]); };
+        volume += glm::dot(at(0), glm::cross(at(1), at(2))) / 6;
+    }
+    return volume;
+}
+
+struct SpaceTimeLayers : AsyncQueries {
+    AsyncGeometry answers;
+    vis::IsoLayer layer{.channel = "f", .value = 0, .method = vis::SurfaceMethod::SpaceTime};
+    /// The geometry of the layer, made to the end.
+    std::vector<vis::GeometryLayer> drawn(std::shared_ptr<const volume::BrickSource> space = {}) {
+        session.layers = {{"surface", true, layer}};
+        ViewContext now = context();
+        now.headless = true;
+        now.origin.spaceOfPlane = std::move(space);
+        return answers.get(now, "pane", false);
+    }
+};
+
+TEST_F(SpaceTimeLayers, AreCutsOfTheSurfaceInSpaceAndTime) {
+    show(hypersphere());
+    for (const double time : {-0.5, -0.21, 0.013, 0.35, 0.6}) {
+        session.time = time;
+        const auto surfaces = drawn();
+        ASSERT_EQ(surfaces.size(), 1u);
+        const double radius = std::sqrt(0.64 - time * time), ball = 4 * M_PI / 3 * std::pow(radius, 3);
+        EXPECT_NEAR(volumeWithin(surfaces[0].geometry->mesh), ball, 0.02 * ball) << time;
+        EXPECT_TRUE(surfaces[0].geometry->notes.empty());
+        const auto written = extractLayer(source, layer, volume::timesAround(source->info().times, time), 0, {});
+        EXPECT_EQ(written->mesh, surfaces[0].geometry->mesh) << "what is exported";
+    }
+    layer.colorBy = "f";
+    const auto coloured = drawn();
+    ASSERT_EQ(coloured.size(), 1u);
+    EXPECT_EQ(coloured[0].channel, "f");
+    ASSERT_EQ(coloured[0].geometry->mesh.scalars.size(), coloured[0].geometry->mesh.positions.size());
+    for (const float value : coloured[0].geometry->mesh.scalars) EXPECT_NEAR(value, 0, 0.02);
+}
+
+// A plane in space and time is cut from the surface of the data, whose samples the plane's are not.
+TEST_F(SpaceTimeLayers, InAPlaneAreCutsOfTheDataThatItIsOf) {
+    const auto space = hypersphere();
+    for (const double degrees : {30.0, 90.0}) {
+        show(volume::makePlaneSource(space, {.degrees = degrees}));
+        const volume::SpaceTimePlane plane = source->info().plane.value();
+        const auto surfaces = drawn(space);
+        ASSERT_EQ(surfaces.size(), 1u);
+        const volume::SurfaceMesh& mesh = surfaces[0].geometry->mesh;
+        ASSERT_GT(mesh.positions.size(), 1000u);
+        for (const glm::vec3& position : mesh.positions) {
+            const glm::dvec4 point = plane.pointAt(mesh.origin + glm::dvec3(position));
+            EXPECT_NEAR(glm::length(point), 0.8, 0.01);
+        }
+        // Through the middle: a ball in its three dimensions, x and y as they are.
+        double most = 0;
+        for (const glm::vec3& position : mesh.positions) most = std::max(most, double(position.x));
+        EXPECT_NEAR(most, 0.8, 0.01);
+        layer.method = vis::SurfaceMethod::Polygons;
+        EXPECT_NE(drawn(space).at(0).geometry->mesh, mesh);
+        layer.method = vis::SurfaceMethod::SpaceTime;
+        EXPECT_FALSE(drawn().empty()) << "without the data: of the samples of the plane";
+    }
+}
+
+TEST_F(SpaceTimeLayers, SurfacesWithStrokesAreMeshes) {
+    show(hypersphere());
+    session.time = 0.013;
+    layer.method = vis::SurfaceMethod::Rays;
+    EXPECT_TRUE(drawn().empty());
+    layer.strokes = {.vector = "U", .width = 0.03f, .strength = 0.4f};
+    const auto surfaces = drawn();
+    ASSERT_EQ(surfaces.size(), 1u);
+    const vis::Geometry& geometry = *surfaces[0].geometry;
+    EXPECT_EQ(geometry.strokes.size(), geometry.mesh.positions.size());
+    EXPECT_EQ(surfaces[0].style.strokes, 0.4f);
+    layer.strokes.strength = 0.9f;
+    EXPECT_EQ(drawn()[0].geometry, surfaces[0].geometry) << "drawn otherwise, not made again";
+    layer.method = vis::SurfaceMethod::SpaceTime;
+    EXPECT_FALSE(drawn()[0].geometry->strokes.empty());
+}
+
+// Streamlines of a plane that is tilted less than 45 degrees mix times: the picture says so.
+TEST_F(SpaceTimeLayers, FlowOfATiltedPlaneSaysThatItsVectorsAreOfSeveralTimes) {
+    const auto notesAt = [&](double degrees) {
+        show(volume::makePlaneSource(hypersphere(), {.degrees = degrees}));
+        session.layers = {{"flow", true, vis::FlowLayer{.vector = "U", .channel = "f"}}};
+        ViewContext now = context();
+        now.headless = true;
+        const auto flow = answers.get(now, "pane", false);
+        return flow.empty() ? std::vector<std::string>{"none"} : flow[0].geometry->notes;
+    };
+    ASSERT_EQ(notesAt(30).size(), 1u);
+    EXPECT_EQ(notesAt(30)[0], "flow of U: vectors of several times, since t differs over the plane");
+    EXPECT_TRUE(notesAt(0).empty());
 }
 
 // Vectors are lengths per time: along an axis that is time they have no direction.

@@ -194,6 +194,24 @@ TEST_F(SessionFileTest, PathsOfEarlierVersionsKeepTheirSpeed) {
     Json step = Json::parse(R"({"schema": 5, "history": [{"op": "add", "path": "/layers/0", "value": )" + path + "}]}");
     migrate(step, "x");
     EXPECT_EQ(step["history"][0]["value"]["technique"]["ignoreUnits"], true) << "what can be undone";
+    // Layers that become paths by keyframes, a variant or a step of the history.
+    const std::string tubes =
+        R"({"technique": {"type": "flow", "vector": "U", "channel": "T", "kind": "tubes", "speed": 1000}})";
+    const auto becoming = [&](const std::string& schema, const std::string& rest) {
+        Json json = Json::parse(R"({"schema": )" + schema + R"(, "layers": [)" + tubes + "]" + rest + "}");
+        migrate(json, "x");
+        return json["layers"][0]["technique"].value("ignoreUnits", false);
+    };
+    const std::string keys =
+        R"(, "animation": {"tracks": [{"path": "/layers/0/technique/kind", "keys": [{"at": 0, "value": [5]}]}]})";
+    EXPECT_TRUE(becoming("5", keys));
+    EXPECT_FALSE(becoming("6", keys));
+    EXPECT_TRUE(becoming("5", R"(, "views": {"c": {"type": "compare", "variants": [
+        {"changes": {"/layers/0/technique/kind": "\"pathlines\""}}]}})"));
+    EXPECT_TRUE(becoming(
+        "5", R"(, "history": [[{"op": "replace", "path": "/layers/0/technique/kind", "value": "pathlines"}]])"));
+    EXPECT_FALSE(
+        becoming("5", R"(, "history": [[{"op": "replace", "path": "/layers/0/technique/kind", "value": "arrows"}]])"));
 }
 
 TEST_F(SessionFileTest, LayersOfALensThatIsMissingAreHidden) {

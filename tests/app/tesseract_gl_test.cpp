@@ -160,6 +160,65 @@ TEST_F(TesseractViews, ALassoSelectsTheSamplesInIt) {
     EXPECT_GT(expectSelected(inside, atRim), 50u);
 }
 
+/// The built-in cell with cells of one height.
+std::shared_ptr<const volume::BrickSource> evenCell() {
+    return volume::makeMemorySource(
+        volume::makeModel("fuel-cell", {{"nx", 7}, {"ny", 9}, {"nz", 21}, {"times", 2}, {"even", 1}}), {});
+}
+
+// At any turn a lasso is one of the two coordinates of the picture, which are sums of all axes.
+TEST_F(TesseractViews, ALassoAtAnyTurnSelectsTheSamplesInIt) {
+    show(evenCell());
+    tesseractView.hand = TesseractHand::Lasso;
+    tesseractView.turn = {25, -35, 50};
+    tesseractView.turn4 = {20, -30, 40};
+    brushAtThisTurn(session, source->info(), tesseractView, frameOfView());
+    EXPECT_TRUE(tesseractView.parallel);
+    EXPECT_FALSE(vis::facedAxes(frameOfView().rotation));
+    ASSERT_EQ(session.data.derived.size(), 2u);
+    drag({{200, 150}, {300, 300}, {200, 300}});
+    EXPECT_FALSE(taken) << "until they are computed";
+    compute();
+    const std::vector<ImVec2> corners{{250, 330}, {390, 300}, {370, 170}, {240, 190}};
+    std::vector<ImVec2> places;
+    for (std::size_t i = 0; i < 4; ++i)
+        for (int step = 0; step < 12; ++step) {
+            const ImVec2 from = corners[i], to = corners[(i + 1) % 4];
+            const float share = float(step) / 12;
+            places.push_back({from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share});
+        }
+    drag(places);
+    EXPECT_TRUE(taken);
+    ASSERT_EQ(session.selection.brushes.size(), 1u);
+    const auto side = [&](std::size_t i, ImVec2 at) {
+        const ImVec2 from = corners[i], to = corners[(i + 1) % 4];
+        const float length = std::hypot(to.x - from.x, to.y - from.y);
+        return ((to.y - from.y) * (at.x - from.x) - (to.x - from.x) * (at.y - from.y)) / length;
+    };
+    const auto inside = [&](ImVec2 at) {
+        for (std::size_t i = 0; i < 4; ++i)
+            if (side(i, at) < 0) return false;
+        return true;
+    };
+    const auto atRim = [&](ImVec2 at) {
+        for (std::size_t i = 0; i < 4; ++i)
+            if (std::abs(side(i, at)) < 3) return true;
+        return false;
+    };
+    EXPECT_GT(expectSelected(inside, atRim), 50u);
+    // Turned on, the brush stays what it is, and another needs other coordinates.
+    tesseractView.turn4 = {20, -30, 60};
+    drag({{200, 150}, {300, 300}, {200, 300}});
+    EXPECT_FALSE(taken);
+    EXPECT_EQ(session.selection.brushes.size(), 1u);
+    const auto body = [&] { draw("tesseract", tesseractView, drawTesseractView, {800, 600}); };
+    frame(body);
+    EXPECT_THAT(said(body), HasSubstr("Brush at this turn"));
+    brushAtThisTurn(session, source->info(), tesseractView, frameOfView());
+    EXPECT_THAT(said(body), HasSubstr("once its coordinates are computed"));
+    EXPECT_EQ(session.data.derived.size(), 4u);
+}
+
 TEST_F(TesseractViews, SaysWhyNoBrushCanBeDrawnAndTurnsThere) {
     show(fuelCell(volume::LatticeKind::CC));
     tesseractView.hand = TesseractHand::Box;

@@ -144,5 +144,27 @@ TEST_F(OpacityEdit, EveryPointHasARim) {
     for (const ImVec2& corner : drawnIn(plotColors().backdrop)) EXPECT_GT(corner.x, plot.min.x - em());
 }
 
+/// Times are not passed over while views still wait for one; but views that take long do not hold playing up.
+TEST(Playback, WaitsForViews) {
+    Animation animation;
+    animation.speed = 10;
+    animation.playing = true;
+    double time = 0;
+    Playback playback;
+    const auto frame = [&](double seconds, bool behind) {
+        advance(playback, animation, time, kTimes, seconds, behind);
+        return time;
+    };
+    EXPECT_EQ(frame(0.1 + 1e-9, false), kTimes[1]);
+    EXPECT_EQ(frame(0.12, true), kTimes[1]);
+    EXPECT_EQ(frame(0.12, true), kTimes[1]);
+    EXPECT_EQ(frame(0.001, false), kTimes[2]) << "at once";
+    EXPECT_EQ(frame(0.09, false), kTimes[2]) << "what was waited for is not made up for";
+    time = 0;
+    playback = {};
+    EXPECT_EQ(frame(0.13, true), kTimes[0]);
+    EXPECT_EQ(frame(0.13, true), kTimes[2]) << "after a quarter of a second as fast as was asked for";
+}
+
 } // namespace
 } // namespace tessera::app

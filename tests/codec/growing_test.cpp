@@ -1,5 +1,6 @@
 #include "codec/archive/archive.h"
 #include "codec/archive/archive_writer.h"
+#include "codec/archive/commits.h"
 #include "codec/container/container.h"
 #include "codec/container/growing_file.h"
 #include "codec/pack/pack.h"
@@ -369,6 +370,34 @@ TEST(Growing, WhatDoesNotContinueAnArchiveIsRefused) {
     volume::Dataset eight = makeDataset({17, 12, 19}, several(), 8);
     pack(eight, d4, folder / "d4.tsr");
     EXPECT_THROW(append(later, folder / "d4.tsr"), Error);
+}
+
+TEST(Growing, MetadataOfALongSeriesAreSerialisedAFewTimes) {
+    // Each time adds little, and twenty values to the metadata, which would take far longer than the times themselves.
+    const TemporaryFolder folder;
+    const auto serialised = [&](int times) {
+        GrowingFile file(folder / ("long" + std::to_string(times)));
+        Commits commits;
+        IndexPage page;
+        Metadata metadata;
+        metadata.info.parameters = {{"T", "K", 1, ScalarType::F32, false, {}, {}}};
+        metadata.info.times.clear();
+        metadata.info.quantities.assign(20, {"voltage", "V", {}});
+        for (std::size_t q = 0; q < 20; ++q) metadata.info.quantities[q].name += std::to_string(q);
+        int count = 0;
+        for (int t = 0; t < times; ++t) {
+            file.append(Bytes(2000));
+            metadata.info.times.push_back(t);
+            for (volume::Quantity& quantity : metadata.info.quantities) quantity.values.push_back(0.1 * t);
+            if (commits.waits(file)) continue;
+            ++count;
+            commits.commit(file, page, metadata, std::size_t(t) + 1, false);
+        }
+        return count;
+    };
+    const int once = serialised(100);
+    EXPECT_GE(once, 1);
+    EXPECT_LE(serialised(1600), once + 4);
 }
 
 TEST(Growing, EveryFlippedByteOfManyCommitsIsNoticed) {

@@ -56,6 +56,34 @@ TEST(Lifting, InvertsBitForBitForAllSizesMasksAndRanges) {
     }
 }
 
+TEST(Lifting, AllInstructionSetsGiveTheSameCoefficients) {
+    std::mt19937 random(9);
+    constexpr int kTrials = 600, kBits[] = {8, 16, 32};
+    int masked = 0;
+    for (int trial = 0; trial < kTrials; ++trial) {
+        const Wavelet wavelet = kAll[trial % std::size(kAll)];
+        const int bits = kBits[trial / 12 % 3];
+        const Case original = randomCase(random, bits);
+        masked += original.present.empty() ? 0 : 1;
+        const Arithmetic arithmetic = bits < 32 && trial % 2 == 0 ? Arithmetic::Narrow : Arithmetic::Wide;
+        Case plain = original;
+        forward(plain.values, plain.present, plain.size, 2, wavelet, arithmetic, Cpu::Portable);
+        std::vector<Cpu> sets;
+        if (bestCpu() != Cpu::Portable) sets.push_back(Cpu::Avx2);
+        if (bestCpu() == Cpu::Avx512) sets.push_back(Cpu::Avx512);
+        for (const Cpu cpu : sets) {
+            Case other = original;
+            forward(other.values, other.present, other.size, 2, wavelet, arithmetic, cpu);
+            ASSERT_EQ(other.values, plain.values) << kWaveletNames[std::size_t(wavelet)] << " trial " << trial;
+            inverse(other.values, other.present, other.size, 2, wavelet, arithmetic, cpu);
+            ASSERT_EQ(other.values, original.values) << kWaveletNames[std::size_t(wavelet)] << " trial " << trial;
+        }
+        inverse(plain.values, plain.present, plain.size, 2, wavelet, arithmetic, Cpu::Portable);
+        ASSERT_EQ(plain.values, original.values);
+    }
+    EXPECT_GT(masked, kTrials / 4);
+}
+
 TEST(Lifting, NarrowAndWideAgreeOnSixteenBits) {
     std::mt19937 random(2);
     for (int trial = 0; trial < 400; ++trial) {

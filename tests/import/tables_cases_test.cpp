@@ -341,5 +341,17 @@ TEST_F(TableCases, OptionsThatFitNothingAreRefused) {
     EXPECT_NO_THROW(openFiles({path}, unit)) << "as sessions may";
 }
 
+TEST_F(TableCases, ColumnsThatComeAgainAreNumbered) {
+    std::string text = "x,y,z,T,T,T.3,T,T\n";
+    for (int row = 0; row < 8; ++row)
+        text += std::to_string(row % 2) + "," + std::to_string(row / 2 % 2) + "," + std::to_string(row / 4) +
+                ",1,2,3,4,5\n";
+    const Dataset dataset = openFiles({write("again.csv", text)}, {});
+    EXPECT_EQ(names(dataset), "T|T.2|T.3|T.4|T.5");
+    EXPECT_EQ(field(dataset, "T.3").value(0), 3);
+    EXPECT_EQ(field(dataset, "T.4").value(0), 4);
+    EXPECT_EQ(field(dataset, "T.5").value(0), 5);
+}
+
 } // namespace
 } // namespace tessera::volume

@@ -22,6 +22,28 @@ const Mode kModes[] = {
          s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3})};
          s.render.gradient = volume::GradientSpan::Wide;
      }},
+    {"cubic",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .shaded = false}),
+                     layerOf(IsoLayer{.channel = "whole", .value = 0.9, .opacity = 0.4f})};
+         s.render.filter = Filter::Cubic;
+     }},
+    {"cubic, shaded",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .density = 3}),
+                     layerOf(VolumeLayer{.channel = "parted", .style = RayStyle::Maximum, .density = 0.5f})};
+         s.render.filter = Filter::Cubic;
+     }},
+    {"cubic, of floats",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .quantity = Quantity::Gradient, .density = 3})};
+         s.render.filter = Filter::Cubic;
+     }},
+    {"cubic, but classified before interpolation",
+     [](Scene& s) {
+         s.layers = {layerOf(VolumeLayer{.channel = "a", .classification = Classification::Pre, .density = 3})};
+         s.render.filter = Filter::Cubic;
+     }},
     {"maximum", [](Scene& s) { s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Maximum})}; }},
     {"minimum", [](Scene& s) { s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Minimum})}; }},
     {"average", [](Scene& s) { s.layers = {layerOf(VolumeLayer{.channel = "b", .style = RayStyle::Average})}; }},

@@ -1,11 +1,12 @@
 #include "tests/vis/function_source.h"
 #include "vis/packet/packet_scene.h"
-#include "volume/reconstruct/reconstruct.h"
+#include "volume/reconstruct/cubic.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <gtest/gtest.h>
+#include <utility>
 
 /// Samples as they are laid out, and what empty space is skipped by: bounds of blocks.
 namespace tessera::vis::packet {
@@ -24,12 +25,38 @@ std::shared_ptr<FunctionSource> waves(LatticeKind kind, bool masked) {
                                             std::vector<FunctionSource::Channel>{{"a", value, {-2, 2}}}, 8);
 }
 
+/// Coefficients of cubic B-splines, of a lattice whose border samples go on without end.
+class Coefficients {
+public:
+    Coefficients(const auto& raw, const volume::LevelGeometry& geometry, const volume::Lattice& lattice)
+        : steps_(1, 1, lattice.kind == LatticeKind::BCC ? 2 : 1) {
+        const int beyond = kMargin + volume::prefilterReach(volume::Prefilter::Cubic, geometry);
+        volume::BrickSamples all;
+        all.size = (lattice.texels() + 2 * beyond) * steps_;
+        for (int z = 0; z < all.size.z; ++z)
+            for (int y = 0; y < all.size.y; ++y)
+                for (int x = 0; x < all.size.x; ++x) {
+                    const volume::Sample sample = raw(glm::ivec3(x, y, z) - beyond * steps_);
+                    all.values.push_back(float(sample.value));
+                    all.present.push_back(sample.present);
+                }
+        found_ = volume::cubicCoefficients(all, geometry);
+    }
+    volume::Sample operator()(glm::ivec3 at) const {
+        return volume::BrickView{found_, steps_.z == 2 ? LatticeKind::BCC : LatticeKind::CC, -kMargin * steps_}(at);
+    }
+
+private:
+    glm::ivec3 steps_;
+    volume::BrickSamples found_;
+};
+
 /// Every sample with its margin is that of the source, or what the prefilter makes of it; beyond the lattice the
 /// nearest of the same sublattice.
 TEST(PacketLayout, HoldsTheSamplesOfTheSource) {
     for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC})
         for (const bool masked : {false, true})
-            for (const Filter filter : {Filter::Average, Filter::AverageQuasi}) {
+            for (const Filter filter : {Filter::Average, Filter::AverageQuasi, Filter::Cubic}) {
                 const auto source = waves(kind, masked);
                 const PacketVolume volume = readPacketVolume(*source, {.filter = filter, .exact = true});
                 ASSERT_EQ(volume.present.empty(), !masked);
@@ -41,6 +68,8 @@ TEST(PacketLayout, HoldsTheSamplesOfTheSource) {
                 };
                 const volume::LevelGeometry geometry = volume::levelGeometry(source->grid(), 0);
                 const volume::Prefiltered filtered(raw, geometry);
+                ASSERT_EQ(volume.cubic, filter == Filter::Cubic);
+                const Coefficients coefficients(raw, geometry, lattice);
                 int absent = 0;
                 for (int odd = 0; odd < (volume.bcc ? 2 : 1); ++odd)
                     for (int z = 0; z <= volume.cells.z; ++z)
@@ -48,7 +77,9 @@ TEST(PacketLayout, HoldsTheSamplesOfTheSource) {
                             for (int x = 0; x <= volume.cells.x; ++x) {
                                 glm::ivec3 at = glm::ivec3(x, y, z) - kMargin;
                                 if (volume.bcc) at.z = 2 * at.z + odd;
-                                const volume::Sample wanted = filter == Filter::Average ? raw(at) : filtered(at);
+                                const volume::Sample wanted = filter == Filter::Average        ? raw(at)
+                                                              : filter == Filter::AverageQuasi ? filtered(at)
+                                                                                               : coefficients(at);
                                 const std::size_t stored = volume.at({x, y, z}, odd);
                                 if (masked) {
                                     ASSERT_EQ(volume.present[stored], wanted.present ? kQuantum : 0);
@@ -56,7 +87,8 @@ TEST(PacketLayout, HoldsTheSamplesOfTheSource) {
                                 absent += !wanted.present;
                                 const double got = volume.offset + volume.scale * double(volume.floats[stored]);
                                 if (wanted.present) {
-                                    ASSERT_NEAR(got, wanted.value, 1e-6) << x << ' ' << y << ' ' << z << ' ' << odd;
+                                    ASSERT_NEAR(got, wanted.value, filter == Filter::Cubic ? 1e-5 : 1e-6)
+                                        << x << ' ' << y << ' ' << z << ' ' << odd;
                                 } else {
                                     ASSERT_EQ(volume.floats[stored], 0);
                                 }
@@ -89,12 +121,16 @@ TEST(PacketBlocks, BoundsAreTight) {
 
 /// Everything that interpolation between samples reads in the cells of a block lies within the block's bounds. In a
 /// cell that are the samples at its corners; of the odd sublattice of BCC, which lies half a cell further, also those
-/// before them.
+/// before them; with the cubic filter one more on every side.
 TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
     for (const LatticeKind kind : {LatticeKind::CC, LatticeKind::BCC})
-        for (const bool masked : {false, true}) {
-            const PacketVolume volume = readPacketVolume(*waves(kind, masked), {.filter = Filter::Average});
+        for (const auto& [masked, filter] : {std::pair{false, Filter::Average},
+                                             {true, Filter::Average},
+                                             {false, Filter::Cubic},
+                                             {true, Filter::Cubic}}) {
+            const PacketVolume volume = readPacketVolume(*waves(kind, masked), {.filter = filter});
             ASSERT_EQ(volume.bcc, kind == LatticeKind::BCC);
+            const int more = filter == Filter::Cubic ? 1 : 0;
             int read = 0;
             for (int n = 0; n < volume.cells.x * volume.cells.y * volume.cells.z; ++n) {
                 const glm::ivec3 cell(n % volume.cells.x, n / volume.cells.x % volume.cells.y,
@@ -103,11 +139,12 @@ TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
                 const std::size_t own = (std::size_t(block.z) * std::size_t(volume.blocks.y) + std::size_t(block.y)) *
                                             std::size_t(volume.blocks.x) +
                                         std::size_t(block.x);
-                for (int odd = 0; odd < (volume.bcc ? 2 : 1); ++odd)
-                    for (int corner = 0; corner < (odd == 1 ? 27 : 8); ++corner) {
-                        const glm::ivec3 by = odd == 1 ? glm::ivec3(corner % 3, corner / 3 % 3, corner / 9) - 1
-                                                       : glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-                        const std::size_t at = volume.at(glm::max(cell + by, glm::ivec3(0)), odd);
+                for (int odd = 0; odd < (volume.bcc ? 2 : 1); ++odd) {
+                    const int first = -odd - more, count = 2 + odd + 2 * more;
+                    for (int corner = 0; corner < count * count * count; ++corner) {
+                        const glm::ivec3 by =
+                            glm::ivec3(corner % count, corner / count % count, corner / count / count) + first;
+                        const std::size_t at = volume.at(glm::clamp(cell + by, glm::ivec3(0), volume.cells), odd);
                         if (!volume.present.empty() && volume.present[at] == 0) {
                             ASSERT_EQ(volume.absent[own], 1);
                             continue;
@@ -116,6 +153,7 @@ TEST(PacketBlocks, BoundsHoldAllThatIsRead) {
                         ASSERT_GE(float(volume.shorts[at]), volume.lo[own] - 0.51f) << n << ' ' << odd << ' ' << corner;
                         ASSERT_LE(float(volume.shorts[at]), volume.hi[own] + 0.51f) << n << ' ' << odd << ' ' << corner;
                     }
+                }
             }
             EXPECT_GT(read, 50000);
         }

@@ -47,7 +47,7 @@ Prepared::Prepared(const Scene& drawn, const volume::BrickSource& source, glm::i
         const double own = scene.time + shift;
         std::unique_ptr<Samples>& entry = samples[{name, own, raw}];
         const Filter filter =
-            raw && scene.render.filter == Filter::AverageQuasi ? Filter::Average : scene.render.filter;
+            raw && prefilterOf(scene.render.filter) != volume::Prefilter::None ? Filter::Average : scene.render.filter;
         if (!entry)
             entry = std::make_unique<Samples>(source, *channel, volume::timesAround(info.times, own), filter,
                                               options.flaws);

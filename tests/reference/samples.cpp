@@ -13,6 +13,7 @@ namespace tessera::vis::reference {
 namespace {
 
 constexpr int kMargin = 4; ///< samples of each sublattice beyond the lattice, for filter, gradient and the shift of BCC
+constexpr int kMarginOfCubic = 2; ///< the same as pictures have it
 
 std::size_t linearIndex(glm::ivec3 size, glm::ivec3 at) {
     return (std::size_t(at.z) * std::size_t(size.y) + std::size_t(at.y)) * std::size_t(size.x) + std::size_t(at.x);
@@ -123,11 +124,14 @@ Samples::Samples(const volume::BrickSource& given, int channel, volume::TimePair
     };
     const Whole whole(source, brick, flaws.ignoredMask && !only);
     const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
-    const glm::ivec3 margin(kMargin, kMargin, kMargin * slices);
+    const bool cubic = filter == Filter::Cubic && !categorical_;
+    unread_ = cubic ? volume::prefilterReach(volume::Prefilter::Cubic, geometry_) : 0;
+    const int own = cubic ? kMarginOfCubic : kMargin;
+    const glm::ivec3 margin = glm::ivec3(1, 1, slices) * (own + unread_);
     first_ = -margin;
     size_ = whole.lattice.texels() * glm::ivec3(1, 1, slices) + 2 * margin;
-    innerLo_ = glm::dvec3(2 - kMargin);
-    innerHi_ = glm::dvec3(whole.lattice.texels() + kMargin - 3);
+    innerLo_ = glm::dvec3(2 - own + (cubic ? 1 : 0));
+    innerHi_ = glm::dvec3(whole.lattice.texels() + own - 3 - (cubic ? 1 : 0));
     values_.resize(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z));
     if (!whole.present.empty()) present_.resize(values_.size());
     const bool prefiltered = filter == Filter::AverageQuasi && !categorical_ && !flaws.unfiltered;
@@ -142,6 +146,51 @@ Samples::Samples(const volume::BrickSource& given, int channel, volume::TimePair
                 if (!present_.empty()) present_[to] = sample.present;
             }
     });
+    if (cubic && !flaws.unfiltered) makeCoefficients();
+}
+
+/// The steps of volume/reconstruct/cubic.h, sample by sample.
+void Samples::makeCoefficients() {
+    const bool bcc = geometry_.bccNeighbours();
+    const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
+    const View all{*this, first_, first_ + size_ - 1, slices};
+    const std::vector<double> samples = values_;
+    // Around an even sample, in half cells: weights of all others that its kernel reaches.
+    std::vector<std::pair<glm::ivec3, double>> kernel;
+    for (int z = -3; z <= 3; ++z)
+        for (int y = -3; y <= 3; ++y)
+            for (int x = -3; x <= 3; ++x) {
+                if ((z & 1) != (y & 1) || (z & 1) != (x & 1) || ((z & 1) != 0 && !bcc)) continue;
+                const auto along = [](int half) {
+                    const double far = std::abs(half) / 2.0;
+                    return far < 1   ? (4 - 6 * far * far + 3 * far * far * far) / 6
+                           : far < 2 ? (2 - far) * (2 - far) * (2 - far) / 6
+                                     : 0;
+                };
+                kernel.emplace_back(glm::ivec3(x, y, z), along(x) * along(y) * along(z) * (bcc ? 0.5 : 1));
+            }
+    for (const double factor : volume::cubicSteps(geometry_)) {
+        std::vector<double> next = values_;
+        parallelFor(std::size_t(size_.z), [&](std::size_t slice) {
+            for (int y = 0; y < size_.y; ++y)
+                for (int x = 0; x < size_.x; ++x) {
+                    const glm::ivec3 at = first_ + glm::ivec3(x, y, int(slice));
+                    const std::size_t i = linearIndex(size_, at - first_);
+                    if (!present_.empty() && present_[i] == 0) continue;
+                    const int odd = slices == 2 ? at.z & 1 : 0;
+                    double smooth = 0;
+                    for (const auto& [away, weight] : kernel) {
+                        // An even sample at half cells 2 i, an odd one at 2 i + 1.
+                        const glm::ivec3 half = 2 * glm::ivec3(at.x, at.y, 0) + odd + away;
+                        const volume::Sample one =
+                            all({half.x >> 1, half.y >> 1, at.z + (slices == 2 ? away.z : away.z / 2)});
+                        smooth += weight * (one.present ? one.value : values_[i]);
+                    }
+                    next[i] = values_[i] + factor * (samples[i] - smooth);
+                }
+        });
+        values_ = std::move(next);
+    }
 }
 
 Range Samples::bounds(glm::ivec3 begin, glm::ivec3 end) const {
@@ -172,7 +221,9 @@ bool Samples::someAbsent() const {
 }
 
 Samples::View Samples::view() const {
-    return {*this, first_, first_ + size_ - 1, geometry_.kind == volume::LatticeKind::BCC ? 2 : 1};
+    const int slices = geometry_.kind == volume::LatticeKind::BCC ? 2 : 1;
+    const glm::ivec3 unread = glm::ivec3(1, 1, slices) * unread_;
+    return {*this, first_ + unread, first_ + size_ - 1 - unread, slices};
 }
 
 template <class Read> volume::Blend Samples::filtered(const Read& samples, glm::dvec3 cells) const {
@@ -183,6 +234,7 @@ template <class Read> volume::Blend Samples::filtered(const Read& samples, glm::
         for (int s = 0; s < 2; ++s) volume::addTrilinear(blend, samples, geometry_.toSublattice(cells, 0), s, 2, 0.5);
     } else {
         blend = filter_ == Filter::Tetrahedral ? volume::tetrahedral(geometry_, samples, cells)
+                : filter_ == Filter::Cubic     ? volume::cubic(geometry_, samples, cells)
                                                : volume::linear(geometry_, samples, cells);
     }
     return blend;

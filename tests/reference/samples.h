@@ -3,6 +3,7 @@
 #include "vis/scene/scene.h"
 #include "volume/bricks/brick_source.h"
 #include "volume/field/time_pair.h"
+#include "volume/reconstruct/cubic.h"
 #include "volume/reconstruct/part_choice.h"
 #include "volume/reconstruct/reconstruct.h"
 
@@ -74,6 +75,7 @@ private:
             std::optional<OnePart> only);
     ColorBlend colorBlend(glm::dvec3 cells, const std::function<glm::dvec4(double)>& of) const;
     View view() const;
+    void makeCoefficients();
     template <class Read> volume::Blend filtered(const Read& samples, glm::dvec3 cells) const;
     volume::Blend blend(glm::dvec3 cells) const;
     volume::LevelGeometry geometry_;
@@ -86,6 +88,7 @@ private:
     double laterWeight_ = 0;
     int brickSize_ = 0;
     glm::ivec3 first_{0}, size_{0};      ///< range of storage indices held
+    int unread_ = 0;                     ///< samples of each sublattice at the ends of that range that no filter reads
     glm::dvec3 innerLo_{0}, innerHi_{0}; ///< cells between which no filter reads beyond it
     std::vector<double> values_;
     std::vector<std::uint8_t> present_; ///< empty: all

@@ -101,7 +101,7 @@ TEST_F(AtlasPoolTest, RangesOfBricksHoldTheirNeighbours) {
         for (int y = 0; y < 2; ++y)
             for (int x = 0; x < 4; ++x) summary.bricks.push_back(source.stats({0, 0, 0, {x, y, z}}));
     vis::TexelEncoding encoding;
-    encoding.prefiltered = false;
+    encoding.prefilter = volume::Prefilter::None;
     const vis::BrickLevels levels(source.grid(), summary, encoding);
     const vis::BlockRanges& ranges = levels.brickRanges();
     ASSERT_EQ(ranges.count, glm::ivec3(4, 2, 2));

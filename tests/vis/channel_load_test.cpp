@@ -67,10 +67,10 @@ TEST(ChannelLoad, LabelsAreReadAsSuchInAnyParameter) {
             {.key = {.channel = channel}, .level = 0, .brick = glm::ivec3(0), .summary = nullptr, .encoding = {}}, {});
     const ChannelStats stats{.min = 3, .max = 7};
     const LoadedTexels &values = exchange.loaded.at(0), &labels = exchange.loaded.at(1);
-    EXPECT_EQ(labels.encoding, makeEncoding(stats, true, false, labels.key.prefiltered));
-    EXPECT_NE(labels.encoding, makeEncoding(stats, false, false, labels.key.prefiltered));
-    EXPECT_EQ(values.encoding, makeEncoding(values.summary->all, false, false, values.key.prefiltered));
-    EXPECT_NE(values.encoding, makeEncoding(values.summary->all, true, false, values.key.prefiltered));
+    EXPECT_EQ(labels.encoding, makeEncoding(stats, true, false, labels.key.prefilter));
+    EXPECT_NE(labels.encoding, makeEncoding(stats, false, false, labels.key.prefilter));
+    EXPECT_EQ(values.encoding, makeEncoding(values.summary->all, false, false, values.key.prefilter));
+    EXPECT_NE(values.encoding, makeEncoding(values.summary->all, true, false, values.key.prefilter));
 }
 
 // Samples that were corrected for pictures lie beyond the range of the data: texels have room for them and for the
@@ -84,7 +84,7 @@ TEST(ChannelLoad, CorrectedSamplesHaveRoomAlikeAtAllTimes) {
         const ChannelStats common = commonStats({.min = lo, .max = hi}, all);
         EXPECT_EQ(common.min, 7.5);
         EXPECT_EQ(common.max, 22.5);
-        const TexelEncoding encoding = makeEncoding(common, false, false, true);
+        const TexelEncoding encoding = makeEncoding(common, false, false, volume::Prefilter::Linear);
         const double overshoot = 2.0 / 3 * 15; // of samples of the whole range
         EXPECT_LE(encoding.offset, 7.5 - overshoot + 1e-9);
         EXPECT_GE(encoding.offset + encoding.scale, 22.5 + overshoot - 1e-9);

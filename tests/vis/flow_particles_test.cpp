@@ -1,3 +1,4 @@
+#include "vis/shapes/flow_data.h"
 #include "vis/shapes/flow_geometry.h"
 #include "volume/sources/memory_source.h"
 
@@ -203,6 +204,24 @@ TEST(FlowParticles, OfASingleTimeAreThoseOfASteadyFlow) {
             EXPECT_NEAR(extentAlongX(geometry->mesh).hi, 20, 0.01);
         }
     }
+}
+
+TEST(FlowNotes, SayWhatIsCoarseOrEndsEarly) {
+    const auto source = windAt({0}, [](double) { return 2.0; });
+    FlowLayer layer{.vector = "U", .channel = "f"};
+    FlowData data;
+    EXPECT_TRUE(flowNotes(source->info(), layer, data).empty());
+    EXPECT_TRUE(makeFlow(*source, layer, 0, glm::dvec3(1))->notes.empty());
+    data.level = 1;
+    *data.stopped = 3;
+    const std::vector<std::string> lines = flowNotes(source->info(), layer, data);
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_EQ(lines[0], "flow of U: from every 2nd sample along each axis");
+    EXPECT_EQ(lines[1], "flow of U: 3 ends of lines lie where they were cut off, after 5000 steps");
+    layer.kind = FlowKind::Pathlines;
+    data.level = 0;
+    *data.stopped = 1;
+    EXPECT_EQ(flowNotes(source->info(), layer, data).at(0), "flow of U: 1 particle stops early, after 50000 steps");
 }
 
 TEST(FlowBlur, CopiesStandWhereGlyphsCameFrom) {

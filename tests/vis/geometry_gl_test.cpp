@@ -93,6 +93,28 @@ TEST_F(GeometryPassTest, LooksLikeASliceInItsPlace) {
             }
 }
 
+TEST_F(GeometryPassTest, StrokesMakeColorsLighterAndDarker) {
+    show([](glm::dvec3) { return 0.5; });
+    Scene scene = unlit();
+    auto stroked = std::make_shared<Geometry>(*atDepth(6));
+    stroked->strokes = {-0.6f, 0.4f, 0.4f, -0.6f}; // along x
+    const auto pictureOf = [&](std::shared_ptr<const Geometry> geometry, float strength) {
+        scene.geometry = {{.geometry = std::move(geometry), .style = {.color = glm::vec3(0.5f), .strokes = strength}}};
+        return picture(scene);
+    };
+    const std::vector<glm::vec4> plain = pictureOf(atDepth(6), 0.5f), none = pictureOf(stroked, 0),
+                                 strokes = pictureOf(stroked, 0.5f);
+    EXPECT_EQ(plain, none);
+    const int middle = kSize.y / 2;
+    std::vector<double> factors;
+    for (int x = 0; x < kSize.x; ++x)
+        if (at(plain, x, middle).a > 0.99f) factors.push_back(at(strokes, x, middle).r / at(plain, x, middle).r);
+    ASSERT_GT(factors.size(), 30u);
+    EXPECT_NEAR(factors.front(), 1 - 0.3, 0.02);
+    EXPECT_NEAR(factors.back(), 1 + 0.2, 0.02);
+    EXPECT_NEAR(factors[factors.size() / 2], 0.95, 0.02) << "smooth between vertices";
+}
+
 // Two translucent rectangles that cross: on each side the one in front is composited first.
 TEST_F(GeometryPassTest, OrdersTranslucentSurfacesByDepth) {
     show([](glm::dvec3) { return 0.5; });

@@ -73,6 +73,13 @@ std::shared_ptr<const Geometry> ballAndSpiral(bool normals) {
 }
 
 /// Two triangles, the edge between which crosses the middles of pixels seen from the front.
+std::shared_ptr<const Geometry> strokedBall() {
+    auto geometry = std::make_shared<Geometry>(*ballAndSpiral(true));
+    for (std::size_t i = 0; i < geometry->mesh.positions.size(); ++i)
+        geometry->strokes.push_back(std::sin(0.7f * float(i)));
+    return geometry;
+}
+
 std::shared_ptr<const Geometry> sheet() {
     auto geometry = std::make_shared<Geometry>();
     geometry->mesh.positions = {{4, 2, 20}, {24, 2, 20}, {24, 22, 20}, {4, 22, 20}};
@@ -107,6 +114,12 @@ const AlikeScene kAlikeScenes[] = {
      [](Scene& s) { s.lighting.model = LightModel::Physical, s.lighting.environment.kind = Environment::Sky; }},
     {"a mesh and lines",
      [](Scene& s) { s.geometry = {{.geometry = ballAndSpiral(true), .style = {.lineWidth = 3}, .channel = "v"}}; }},
+    {"a mesh with strokes and lines",
+     [](Scene& s) {
+         s.geometry = {{.geometry = strokedBall(), .style = {.lineWidth = 3, .strokes = 0.8f}, .channel = "v"},
+                       {.geometry = strokedBall(),
+                        .style = {.opacity = 0.4f, .strokes = 0.5f, .look = *Look::preset("cartoon")}}};
+     }},
     {"halos of a mesh and lines",
      [](Scene& s) {
          s.geometry =

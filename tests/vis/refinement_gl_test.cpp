@@ -157,6 +157,54 @@ TEST_F(Refinement, TheProcessorBeginsWhereNeighboursDiffer) {
     EXPECT_LT(boxes.front().end.x, kSize.x / 2);
 }
 
+/// Further rays by the processor: bit by bit or in one go, in a part of the picture after a lens has moved, among
+/// lines, they make the same picture, which is that of all rays.
+TEST_F(Refinement, FurtherRaysOfTheProcessorAreCastWhereTheyAreNeeded) {
+    for (const bool lines : {false, true}) {
+        SCOPED_TRACE(lines);
+        open();
+        Scene shown = scene(Engine::Processor);
+        shown.render.samples = 4;
+        shown.render.stepVoxels = 0.5f;
+        shown.layers.push_back({"within", true, IsoLayer{.channel = "v", .value = 0.7}});
+        shown.layers[1].lens = "lens";
+        shown.lenses = {{.name = "lens", .center = {12, 12, 18}, .size = glm::vec3(0.3f)}};
+        if (lines) {
+            auto geometry = std::make_shared<Geometry>();
+            geometry->lines.positions = {{2, 3, 20}, {25, 20, 16}, {4, 22, 30}};
+            geometry->lines.ends = {3};
+            shown.geometry = {{.geometry = geometry, .style = {.lineWidth = 1.5f}}};
+        }
+        const auto complete = [](const FrameStatus& status) { return status.complete; };
+        ASSERT_TRUE(frames(shown, complete));
+        EXPECT_FALSE(target->packets.added.holds(kSize, target->buffers.everything())) << "kept without need";
+        const std::vector<glm::vec4> slowly = renderer.readLinear(*target);
+        const ViewTargetPtr other = renderer.makeTarget();
+        EXPECT_TRUE(renderer.render(*other, shown, {.size = kSize, .wait = true}).complete);
+        EXPECT_LT(test::maxDifference(slowly, renderer.readLinear(*other)), 1e-6);
+        shown.lenses[0].center.x += 4;
+        ASSERT_TRUE(frames(shown, complete));
+        EXPECT_NE(target->state.stale(), target->buffers.everything()) << "all was drawn again";
+        const std::vector<glm::vec4> part = renderer.readLinear(*target);
+        EXPECT_TRUE(renderer.render(*other, shown, {.size = kSize, .wait = true}).complete);
+        EXPECT_GT(test::maxDifference(slowly, part), 0.1);
+        EXPECT_LT(test::maxDifference(part, renderer.readLinear(*other)), 0.02) << "a block may lie otherwise";
+        if (lines) continue;
+        packet::PacketRenderer packets;
+        packets.setSource(test::brickedSource(volume::LatticeKind::CC));
+        const packet::PacketPicture all = packets.render(shown, kSize);
+        double sum = 0;
+        for (int y = 0; y < kSize.y; ++y)
+            for (int x = 0; x < kSize.x; ++x)
+                for (int c = 0; c < 4; ++c) {
+                    const glm::vec4& own = part[std::size_t((kSize.y - 1 - y) * kSize.x + x)];
+                    const double off = double(own[c] - all.rgba[std::size_t((y * kSize.x + x) * 4 + c)]);
+                    sum += off * off;
+                }
+        EXPECT_GT(-10 * std::log10(sum / (4.0 * kSize.x * kSize.y)), 60);
+    }
+}
+
 /// While something moves only the reduced picture is drawn, and a quick picture needs no half resolution.
 TEST_F(Refinement, NotInMotionAndNotWhereThePictureIsQuick) {
     open();

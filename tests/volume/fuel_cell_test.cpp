@@ -7,8 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <gtest/gtest.h>
+#include <string>
 #include <tbb/global_control.h>
+#include <unistd.h>
+#include <utility>
 
 namespace tessera::volume {
 namespace {
@@ -409,6 +414,31 @@ TEST(FuelCell, CanBeStopped) {
         if (fraction > 0.4) source.request_stop();
     };
     EXPECT_THROW(makeFuelCell({{"nx", 5}, {"ny", 7}, {"nz", 8}}, progress), Cancelled);
+}
+
+/// The default cell comes from what was solved by an earlier start of the program; any setting solves it.
+TEST(FuelCell, AKeptSolutionIsTheSolvedOne) {
+    const std::string home = ::testing::TempDir() + "tessera_kept_cell_" + std::to_string(::getpid());
+    const char* const before = std::getenv("XDG_CACHE_HOME");
+    const std::string restored = before ? before : "";
+    ::setenv("XDG_CACHE_HOME", home.c_str(), 1);
+    int reports = 0;
+    const Progress counted{[&](double, const std::string& what) { reports += what == "load step" ? 1 : 0; }, {}};
+    const Dataset first = makeFuelCell({}, counted);
+    EXPECT_GT(std::exchange(reports, 0), 0);
+    const Dataset again = makeFuelCell({}, counted), solved = makeFuelCell({{"times", 24}});
+    EXPECT_EQ(reports, 0) << "it is solved again";
+    for (const Dataset* other : {&again, &solved}) {
+        EXPECT_EQ(other->info, first.info);
+        for (const int time : {0, 5, 23})
+            for (int parameter = 0; parameter < int(first.info.parameters.size()); ++parameter)
+                for (int c = 0; c < first.info.parameters[std::size_t(parameter)].components; ++c) {
+                    const Field one = first.read(parameter, c, time), two = other->read(parameter, c, time);
+                    EXPECT_TRUE(one.samples == two.samples) << parameter << " " << c << " " << time;
+                }
+    }
+    std::filesystem::remove_all(home);
+    before ? ::setenv("XDG_CACHE_HOME", restored.c_str(), 1) : ::unsetenv("XDG_CACHE_HOME");
 }
 
 TEST(FuelCellProperties, AgreeWithTheirSources) {

@@ -1,10 +1,13 @@
 #include "volume/base/error.h"
+#include "volume/import/file_groups.h"
 #include "volume/import/files/series.h"
+#include "volume/import/import.h"
 
 #include <filesystem>
 #include <fstream>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <optional>
 #include <unistd.h>
 
 namespace tessera::volume {
@@ -70,6 +73,75 @@ TEST_F(ImportSeries, FilesOfAGroupAreSortedByNumber) {
     EXPECT_EQ(expandPaths({base + "b.vti", base + "b.vti"}).size(), 1u);
     EXPECT_THROW(expandPaths({base + "c_*.vti"}), Error);
     EXPECT_THROW(expandPaths({base + "c.vti"}), Error);
+}
+
+/// Reads that this process has asked the system for; nothing where it does not count them.
+std::optional<long> readsSoFar() {
+    std::ifstream in("/proc/self/io");
+    for (std::string word; in >> word;)
+        if (long count = 0; word == "syscr:" && in >> count) return count;
+    return std::nullopt;
+}
+
+TEST_F(ImportSeries, AFileOfASeriesIsReadAsOftenHoweverLongItIs) {
+    if (!readsSoFar()) GTEST_SKIP() << "the system does not count reads";
+    const auto reads = [&](int times) {
+        const std::string name = "of" + std::to_string(times);
+        for (int t = 0; t < times; ++t) {
+            write(name + "/a_" + std::to_string(t) + ".raw", std::string(8, char(t)));
+            write(name + "/a_" + std::to_string(t) + ".json", R"({"dims": [2, 2, 2], "dtype": "uint8"})");
+        }
+        const long before = *readsSoFar();
+        const Dataset series = openFiles({(folder_ / name).string()}, {});
+        EXPECT_EQ(series.info.times.size(), std::size_t(times));
+        for (int t = 0; t < times; ++t) EXPECT_EQ(series.read(0, 0, t).value(0), double(t));
+        return *readsSoFar() - before;
+    };
+    const long few = reads(20), some = reads(40), many = reads(100);
+    EXPECT_LE(many - some, 3 * (some - few));
+    EXPECT_LE(some - few, 6 * 20); // of the sidecar, then of the samples
+}
+
+TEST_F(ImportSeries, BlocksOfOneNameKeepTheirOrderInEachFile) {
+    const auto file = [](const char* path, const std::vector<const char*>& names) {
+        OpenedFile opened;
+        opened.entry.path = path;
+        opened.entry.group = "a_#.vtm";
+        for (const char* name : names) {
+            FileBlock& block = opened.blocks.emplace_back();
+            block.name = name;
+            block.arrays = {{"T", "K", 1, ScalarType::F32, false, {}}};
+        }
+        return opened;
+    };
+    std::vector<OpenedFile> files{file("a_0.vtm", {"air", "air", "fuel"}), file("a_1.vtm", {"air", "fuel", "air"}),
+                                  file("a_2.vtm", {"fuel", "land"})};
+    files[2].blocks[0].arrays.insert(files[2].blocks[0].arrays.begin(), {"p", "Pa", 1, ScalarType::F32, false, {}});
+    const std::vector<FileGroup> groups = groupsInTime(files);
+    ASSERT_EQ(groups.size(), 1u);
+    ASSERT_EQ(groups[0].blocks.size(), 4u);
+    EXPECT_EQ(groups[0].blocks[0].at, (std::vector<int>{0, 0, -1}));
+    EXPECT_EQ(groups[0].blocks[1].at, (std::vector<int>{1, 2, -1}));
+    EXPECT_EQ(groups[0].blocks[2].at, (std::vector<int>{2, 1, 0}));
+    EXPECT_EQ(groups[0].blocks[3].at, (std::vector<int>{-1, -1, 1}));
+    ASSERT_EQ(groups[0].blocks[2].arrays.size(), 2u);
+    EXPECT_EQ(groups[0].blocks[2].arrays[0], (std::vector<int>{0, 0, 1})); // T
+    EXPECT_EQ(groups[0].blocks[2].arrays[1], (std::vector<int>{-1, -1, 0}));
+}
+
+TEST_F(ImportSeries, FilesOfOnePatternWithoutASharedArrayAreParameters) {
+    std::vector<OpenedFile> files(3);
+    for (std::size_t f = 0; f < files.size(); ++f) {
+        files[f].entry.path = "q" + std::to_string(f) + ".vti";
+        files[f].entry.number = double(f);
+        files[f].entry.group = "q#.vti";
+        const std::string name = f == 2 ? "q0" : "q" + std::to_string(f);
+        files[f].blocks.emplace_back().arrays = {{name, "", 1, ScalarType::F32, false, {}}};
+    }
+    const std::vector<FileGroup> groups = groupsInTime(files);
+    ASSERT_EQ(groups.size(), 2u);
+    EXPECT_THAT(groups[0].files, testing::ElementsAre(&files[0], &files[2]));
+    EXPECT_THAT(groups[1].files, testing::ElementsAre(&files[1]));
 }
 
 TEST_F(ImportSeries, WhatIsNamedTwiceCountsOnce) {

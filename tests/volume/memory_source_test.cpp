@@ -5,12 +5,15 @@
 #include "volume/base/parallel.h"
 #include "volume/resample/resample.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 #include <thread>
+#include <type_traits>
 
 namespace tessera::volume {
 namespace {
@@ -229,6 +232,38 @@ TEST(MemorySource, AFailedLoadIsReportedAndTriedAgain) {
     EXPECT_THROW(open(dataset, LatticeKind::CC)->read({0, 0, 0, {0, 0, 0}}), Error);
     dataset.read = [](int, int, int) { return makeField(ccLattice({7, 8, 8}), ScalarType::F32); };
     EXPECT_THROW(open(dataset, LatticeKind::CC)->read({0, 0, 0, {0, 0, 0}}), Error);
+}
+
+/// Stored numbers are summed as they are: the brightest bytes, and the ends of 16-bit ones, with offset and scale.
+TEST(MemorySource, CoarseLevelsAreMeansOfTheBrightestNumbers) {
+    const glm::ivec3 size(128, 128, 130);
+    for (const ScalarType type : {ScalarType::U8, ScalarType::U16, ScalarType::I16, ScalarType::F32}) {
+        Dataset data;
+        data.info.lattice.size = size;
+        data.info.bounds = {glm::dvec3(0), glm::dvec3(size - 1)};
+        Parameter parameter;
+        parameter.name = "v";
+        parameter.type = type;
+        data.info.parameters = {parameter};
+        double most = 0;
+        data.read = [&](int, int, int) {
+            Field field = makeField(data.info.lattice, type);
+            field.offset = -7;
+            field.scale = 0.5;
+            dispatch(type, [&]<class T>(T) {
+                const T top = std::is_floating_point_v<T> ? T(3) : std::numeric_limits<T>::max();
+                std::ranges::fill(field.as<T>(), top);
+                most = -7 + 0.5 * double(top);
+            });
+            return field;
+        };
+        const auto source = makeMemorySource(data, {.brickSize = 128});
+        ASSERT_EQ(source->grid().levels, 6);
+        for (int level = 0; level < 6; ++level)
+            for (const int z : {0, 1})
+                for (const float value : source->read({0, 0, level, {0, 0, z}}).values)
+                    ASSERT_FLOAT_EQ(value, float(most)) << int(type) << ' ' << level;
+    }
 }
 
 } // namespace

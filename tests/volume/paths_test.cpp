@@ -147,6 +147,27 @@ TEST(Paths, EndWhereTheFieldDoes) {
     EXPECT_FALSE(carried(field, {7, 1, 0}, 0, 0, {})) << "nothing is there";
 }
 
+TEST(Paths, CountWhatStopsForTheNumberOfItsSteps) {
+    const ChangingField turning = [](glm::dvec3 p, double) -> std::optional<glm::dvec3> {
+        return glm::dvec3(-p.y, p.x, 0);
+    };
+    std::atomic<std::size_t> stopped = 0;
+    PathSettings paths{.stopped = &stopped};
+    StreamlineSettings lines{.longest = 60, .stopped = &stopped};
+    const auto streamlineOf = [&] { return streamline([&](glm::dvec3 p) { return turning(p, 0); }, {4, 0, 0}, lines); };
+    EXPECT_EQ(pathline(turning, {4, 0, 0}, 5, 0, 10, paths).times.back(), 10);
+    EXPECT_GT(streamlineOf().size(), 100u);
+    EXPECT_EQ(stopped, 0u);
+    paths.mostSteps = 10;
+    EXPECT_LT(pathline(turning, {4, 0, 0}, 5, 0, 10, paths).times.back(), 10);
+    EXPECT_EQ(stopped, 2u) << "both ways";
+    EXPECT_FALSE(carried(turning, {4, 0, 0}, 0, 10, paths));
+    EXPECT_EQ(stopped, 3u);
+    lines.mostSteps = 10;
+    EXPECT_EQ(streamlineOf().size(), 21u);
+    EXPECT_EQ(stopped, 5u);
+}
+
 // Smoke in a wind that turns with time: what was released at r is at the difference of the integrals.
 TEST(Streaklines, OfATurningWindAreTheClosedForm) {
     const ChangingField wind = [](glm::dvec3, double t) -> std::optional<glm::dvec3> {

@@ -32,7 +32,7 @@ BlockRanges rangesOfBricks(const volume::BrickGrid& grid, const ChannelSummary& 
     BlockRanges out;
     out.count = grid.count();
     out.edge = grid.brickSize;
-    const double overshoot = encoding.prefiltered ? 2.0 / 3 : 0;
+    const double overshoot = volume::prefilterOvershoot(encoding.prefilter);
     eachIndex(glm::ivec3(0), out.count, [&](glm::ivec3 brick) {
         double min = kInfinity, max = -min;
         eachIndex(glm::max(brick - 1, glm::ivec3(0)), glm::min(brick + 2, out.count), [&](glm::ivec3 near) {

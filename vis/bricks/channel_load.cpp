@@ -99,7 +99,7 @@ void load(LoadExchange& exchange, const LoadRequest& request, LoadedTexels& out,
     // Bricks of a channel keep one encoding, even if the range over all times has grown since the first was loaded.
     out.encoding = request.encoding ? *request.encoding
                                     : makeEncoding(many ? commonStats(own, source.info().channelRange(channel)) : own,
-                                                   categorical, request.exact, request.key.prefiltered);
+                                                   categorical, request.exact, request.key.prefilter);
     out.encoding.coverage = out.encoding.coverage || request.coverage;
 
     std::atomic<bool> damaged = false;

@@ -15,7 +15,7 @@ namespace tessera::vis {
 
 struct ChannelKey {
     int channel = 0, time = 0; ///< a stored time, or one of WithComputedTimes
-    bool prefiltered = true;
+    volume::Prefilter prefilter = volume::Prefilter::Linear;
     int part = -1; ///< only the samples of this part (volume/field/parts.h); -1: all samples
     auto operator<=>(const ChannelKey&) const = default;
 };

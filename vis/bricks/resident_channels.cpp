@@ -205,7 +205,7 @@ bool ResidentChannels::reuseBrick(const ChannelKey& key, ResidentChannel& channe
 std::optional<TexelEncoding> ResidentChannels::encodingOfParts(const ChannelKey& key) const {
     for (const auto& [other, channel] : channels_)
         if (key.part >= 0 && other.part >= 0 && other.part != key.part && other.channel == key.channel &&
-            other.time == key.time && other.prefiltered == key.prefiltered && channel.shown)
+            other.time == key.time && other.prefilter == key.prefilter && channel.shown)
             return channel.shown->encoding;
     return std::nullopt;
 }

@@ -45,11 +45,11 @@ ChannelStats commonStats(const ChannelStats& own, Range allTimes) {
     return common;
 }
 
-TexelEncoding makeEncoding(const ChannelStats& stats, bool categorical, bool exact, bool prefiltered) {
+TexelEncoding makeEncoding(const ChannelStats& stats, bool categorical, bool exact, volume::Prefilter prefilter) {
     TexelEncoding encoding;
     encoding.coverage = stats.someAbsent;
     encoding.exact = exact;
-    encoding.prefiltered = prefiltered && !categorical;
+    encoding.prefilter = categorical ? volume::Prefilter::None : prefilter;
     const double range = stats.max > stats.min ? stats.max - stats.min : 1;
     if (categorical && range < 65535) {
         encoding.offset = stats.min;
@@ -58,8 +58,10 @@ TexelEncoding makeEncoding(const ChannelStats& stats, bool categorical, bool exa
         encoding.offset = stats.min;
         encoding.scale = range;
     } else {
-        encoding.offset = stats.min - range * (2.0 / 3);
-        encoding.scale = range * (7.0 / 3);
+        const double headroom =
+            volume::prefilterOvershoot(prefilter == volume::Prefilter::None ? volume::Prefilter::Linear : prefilter);
+        encoding.offset = stats.min - range * headroom;
+        encoding.scale = range * (1 + 2 * headroom);
     }
     return encoding;
 }
@@ -159,14 +161,17 @@ struct Extent {
     }
 };
 
-/// Texel ranges per block from rows of texels. A block includes one texel beyond each side, which interpolation inside
-/// it reads.
+/// Texel ranges per block from rows of texels. A block includes the texels beyond each side that interpolation inside
+/// it reads: one, of a cubic kernel two.
 struct RowRanges {
     glm::ivec3 size; ///< texels with halo
+    int beyond;      ///< at most kHalo
     int blocks;      ///< per row
     std::vector<float> min, max;
 
-    explicit RowRanges(glm::ivec3 of) : size(of), blocks((of.x - 2 * kHalo + kBlockTexels - 1) / kBlockTexels) {
+    RowRanges(glm::ivec3 of, volume::Prefilter prefilter)
+        : size(of), beyond(prefilter == volume::Prefilter::Cubic ? 2 : 1),
+          blocks((of.x - 2 * kHalo + kBlockTexels - 1) / kBlockTexels) {
         const std::size_t total = std::size_t(blocks) * std::size_t(size.y) * std::size_t(size.z);
         min.resize(total);
         max.resize(total);
@@ -174,7 +179,7 @@ struct RowRanges {
     /// `texels`: one row, with `samples` values per texel.
     void take(std::size_t row, const float* texels, int samples) {
         for (int x = 0; x < blocks; ++x) {
-            const int lo = x * kBlockTexels + kHalo - 1, hi = std::min(lo + kBlockTexels + 2, size.x);
+            const int lo = x * kBlockTexels + kHalo - beyond, hi = std::min(lo + kBlockTexels + 2 * beyond, size.x);
             Extent extent;
             for (int n = lo * samples; n < hi * samples; ++n) extent.take(texels[n], texels[n]);
             min[row * std::size_t(blocks) + std::size_t(x)] = extent.least;
@@ -192,8 +197,9 @@ BlockRanges blockRanges(const RowRanges& rows, int level) {
     blocks.min.resize(total);
     blocks.max.resize(total);
     parallelFor(std::size_t(blocks.count.y) * std::size_t(blocks.count.z), [&](std::size_t i) {
-        const glm::ivec2 lo = glm::ivec2(int(i) % blocks.count.y, int(i) / blocks.count.y) * kBlockTexels + (kHalo - 1);
-        const glm::ivec2 hi = glm::min(lo + (kBlockTexels + 2), glm::ivec2(rows.size.y, rows.size.z));
+        const glm::ivec2 lo =
+            glm::ivec2(int(i) % blocks.count.y, int(i) / blocks.count.y) * kBlockTexels + (kHalo - rows.beyond);
+        const glm::ivec2 hi = glm::min(lo + (kBlockTexels + 2 * rows.beyond), glm::ivec2(rows.size.y, rows.size.z));
         for (std::size_t x = 0; x < across; ++x) {
             Extent extent;
             for (int z = lo.y; z < hi.y; ++z)
@@ -255,14 +261,16 @@ TexelBlock makeTexels(const BrickGrid& grid, const BrickKey& which, const TexelB
     const std::size_t texels = std::size_t(out.size.x) * std::size_t(out.size.y) * std::size_t(out.size.z);
     (encoding.exact ? out.exact.resize(texels * std::size_t(out.components))
                     : out.normalised.resize(texels * std::size_t(out.components)));
-    RowRanges ranges(out.size);
+    RowRanges ranges(out.size, encoding.prefilter);
     // Layer by layer, to keep the intermediate buffer small.
     const int layer = grid.brickSize;
     for (int z = box.begin.z; z < box.end.z; z += layer) {
         const TexelBox part{
             box.level, {box.begin.x, box.begin.y, z}, {box.end.x, box.end.y, std::min(z + layer, box.end.z)}};
-        BrickSamples samples = gatherBox(grid, which, part, encoding.prefiltered ? kHalo + 1 : kHalo, read);
-        if (encoding.prefiltered) samples = volume::prefilter(samples, volume::levelGeometry(grid, box.level));
+        const volume::LevelGeometry geometry = volume::levelGeometry(grid, box.level);
+        const int reach = volume::prefilterReach(encoding.prefilter, geometry);
+        BrickSamples samples = gatherBox(grid, which, part, kHalo + reach, read);
+        if (reach > 0) samples = volume::prefiltered(samples, geometry, encoding.prefilter);
         const int below = z - box.begin.z, first = z == box.begin.z ? 0 : below + kHalo,
                   last = part.end.z == box.end.z ? out.size.z : part.end.z - box.begin.z + kHalo;
         const auto rows = std::size_t(out.size.y);

@@ -2,6 +2,7 @@
 
 #include "vis/optics/adaptive_step.h"
 #include "volume/bricks/brick_source.h"
+#include "volume/reconstruct/prefilter.h"
 
 #include <functional>
 #include <memory>
@@ -16,9 +17,9 @@ inline constexpr int kBlockTexels = kStepBlock; ///< edge of a block for empty-s
 
 /// How texel values map to physical values: physical = offset + scale * texel.
 struct TexelEncoding {
-    bool coverage = false;   ///< extra components hold the presence of each sample, 0..1
-    bool exact = false;      ///< 32-bit float texels, else 16-bit normalised
-    bool prefiltered = true; ///< by the filter Prefiltered (volume/reconstruct/reconstruct.h), else unfiltered samples
+    bool coverage = false; ///< extra components hold the presence of each sample, 0..1
+    bool exact = false;    ///< 32-bit float texels, else 16-bit normalised
+    volume::Prefilter prefilter = volume::Prefilter::Linear;
     double offset = 0, scale = 1;
     bool operator==(const TexelEncoding&) const = default;
 };
@@ -35,9 +36,9 @@ ChannelStats channelStats(std::span<const volume::BrickStats> bricks);
 /// by up to kCentredHeadroom of its width (volume/sources/centred_samples.h): then all times have that much more.
 ChannelStats commonStats(const ChannelStats& own, Range allTimes);
 
-/// The encoding of a channel: unfiltered values in [0, 1], 16 bits with headroom of 2/3 of the range on either side for
-/// the overshoot of the prefilter. Categorical values are stored as integers.
-TexelEncoding makeEncoding(const ChannelStats& stats, bool categorical, bool exact, bool prefiltered);
+/// The encoding of a channel: unfiltered values in [0, 1], 16 bits with headroom on either side for the overshoot of
+/// the prefilter. Categorical values are stored as integers.
+TexelEncoding makeEncoding(const ChannelStats& stats, bool categorical, bool exact, volume::Prefilter prefilter);
 
 /// Texels of a level: one per sample (CC), or one per pair of samples (BCC).
 glm::ivec3 levelTexels(const volume::BrickGrid& grid, int level);
@@ -49,7 +50,8 @@ struct TexelBox {
     glm::ivec3 size() const { return end - begin; }
 };
 
-/// Texel ranges per block over all texels that interpolation inside it can read; min > max: all absent.
+/// Texel ranges per block over all texels that interpolation inside it can read, linear or cubic; min > max: all
+/// absent.
 struct BlockRanges {
     glm::ivec3 count{0};
     int edge = kBlockTexels; ///< edge of a block in texels of `level`

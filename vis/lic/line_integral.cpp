@@ -42,10 +42,6 @@ struct Around {
     double weight(int i, int j) const { return (i ? share.x : 1 - share.x) * (j ? share.y : 1 - share.y); }
 };
 
-double kernelWeight(double share, StrokeKernel kernel) {
-    return kernel == StrokeKernel::Box ? 1 : 0.5 + 0.5 * std::cos(std::numbers::pi * share);
-}
-
 /// Convolves along lines through texels of one picture.
 class Convolution {
 public:
@@ -137,7 +133,17 @@ private:
     std::vector<std::uint8_t> whole_; ///< isWhole of each texel
 };
 
-/// Mean 0 and the stated deviation, of the texels that are present.
+} // namespace
+
+double noiseAt(glm::ivec3 corner, std::uint32_t seed) {
+    const std::uint32_t column = mixedBits(std::uint32_t(corner.z) + mixedBits(seed ^ 0x9e3779b9U));
+    return noiseAt(corner.x, corner.y, column);
+}
+
+double kernelWeight(double share, StrokeKernel kernel) {
+    return kernel == StrokeKernel::Box ? 1 : 0.5 + 0.5 * std::cos(std::numbers::pi * share);
+}
+
 void stretchContrast(std::vector<float>& values) {
     double count = 0, sum = 0, squares = 0;
     for (const float value : values)
@@ -152,8 +158,6 @@ void stretchContrast(std::vector<float>& values) {
     for (float& value : values)
         if (!std::isnan(value)) value = float(std::clamp((double(value) - mean) * factor, -1.0, 1.0));
 }
-
-} // namespace
 
 bool PlaneField::present(glm::ivec2 at) const {
     return !std::isnan(vectors[index(at)].x);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,15 @@ struct PlaneField {
 /// number of the first texel, so that a texel of one number has one value in every rectangle; `seed`: as numbers of
 /// generators.
 std::vector<float> planeNoise(glm::ivec2 size, glm::ivec2 first, int grain, std::uint32_t seed);
+
+/// Random in [-1, 1) by the corner of a grid.
+double noiseAt(glm::ivec3 corner, std::uint32_t seed);
+
+/// Weight at a share of half the length of the kernel, 1 in its middle.
+double kernelWeight(double share, StrokeKernel kernel);
+
+/// Stretches values to mean 0 and the deviation kStrokeDeviation, clipped at -1 and 1; NaNs are left out and stay.
+void stretchContrast(std::vector<float>& values);
 
 struct LineIntegralSettings {
     double length = 40; ///< of the kernel, texels; half of it to each side

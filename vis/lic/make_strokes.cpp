@@ -107,14 +107,13 @@ private:
     std::array<int, 3> channels_{};
 };
 
-/// Index of a vector parameter by name.
+} // namespace
+
 std::optional<int> vectorNamed(const volume::DatasetInfo& info, const std::string& name) {
     for (std::size_t p = 0; p < info.parameters.size(); ++p)
         if (info.parameters[p].components == 3 && info.parameters[p].name == name) return int(p);
     return std::nullopt;
 }
-
-} // namespace
 
 StrokeRoom strokeRoom(const Plane& plane, const WorldFrame& frame, double texel) {
     StrokeRoom room;

@@ -5,9 +5,14 @@
 #include "volume/bricks/brick_source.h"
 
 #include <memory>
+#include <optional>
+#include <string>
 
 /// Strokes of slices, made of data.
 namespace tessera::vis {
+
+/// Index of a vector parameter by name.
+std::optional<int> vectorNamed(const volume::DatasetInfo& info, const std::string& name);
 
 /// Where a picture of strokes lies in a plane of the stretched world.
 struct StrokeRoom {

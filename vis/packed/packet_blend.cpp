@@ -34,6 +34,7 @@ public:
         : a_(earlier), b_(later), weight_(weight), whole_(earlier.present.empty() && later.present.empty()) {
         out_.bcc = a_.bcc;
         out_.exact = a_.exact;
+        out_.cubic = a_.cubic;
         out_.cells = a_.cells;
         out_.bricks = a_.bricks;
         out_.blocks = a_.blocks;
@@ -60,7 +61,7 @@ public:
     }
 
 private:
-    template <class T> void blend(const std::vector<T>& from, const std::vector<T>& to, std::vector<T>& out) {
+    template <class Samples> void blend(const Samples& from, const Samples& to, Samples& out) {
         out.resize(from.size());
         if (!whole_) out_.present.resize(from.size());
         parallelFor((from.size() + kInOneGo - 1) / kInOneGo, [&](std::size_t part) {

@@ -1,12 +1,14 @@
 #include "vis/packed/packet_volume.h"
 
-#include "vis/packed/padded_samples.h"
+#include "vis/packed/laid_rows.h"
+#include "volume/base/error.h"
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
 #include "volume/bricks/source_at_time.h"
-#include "volume/reconstruct/reconstruct.h"
+#include "volume/reconstruct/cubic.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -15,31 +17,34 @@ namespace tessera::vis::packet {
 
 namespace {
 
+constexpr int kWindows = kBrick / kFine;
+
 /// Extremes within windows along one axis: of `from`, `outer` times `length` times `inner` values, windows of kFine + 1
-/// texels of `slices` values that begin every kFine texels; `to` gets `outer` times kBrick / kFine times `inner`.
+/// texels of `slices` values that begin every kFine texels; `to` gets `outer` times kWindows times `inner`.
 template <class T, class Op>
-std::vector<T> inWindows(const std::vector<T>& from, int outer, int length, int slices, const Op& op) {
-    const std::size_t inner = from.size() / std::size_t(outer * length);
-    std::vector<T> out(std::size_t(outer) * (kBrick / kFine) * inner);
-    T* to = out.data();
+void inWindows(const T* from, int outer, int length, int slices, std::size_t inner, const Op& op, T* to) {
     for (int o = 0; o < outer; ++o)
-        for (int window = 0; window < kBrick / kFine; ++window, to += inner) {
-            const T* each = from.data() + std::size_t(o * length + window * kFine * slices) * inner;
+        for (int window = 0; window < kWindows; ++window, to += inner) {
+            const T* each = from + std::size_t(o * length + window * kFine * slices) * inner;
             std::copy_n(each, inner, to);
             for (int n = 1; n < (kFine + 1) * slices; ++n) {
                 each += inner;
                 for (std::size_t i = 0; i < inner; ++i) to[i] = op(to[i], each[i]);
             }
         }
-    return out;
 }
 
 /// The same in cubes, of a brick with `slices` of each texel.
-template <class T, class Op> std::vector<T> inBlocks(const std::vector<T>& from, int slices, const Op& op) {
-    constexpr int kWindows = kBrick / kFine;
-    const std::vector<T> slabs = inWindows(from, 1, kRow * slices, slices, op);
-    const std::vector<T> bars = inWindows(slabs, kWindows, kRow, 1, op);
-    return inWindows(bars, kWindows * kWindows, kRow, 1, op);
+template <class T> using Blocks = std::array<T, std::size_t(kWindows) * kWindows * kWindows>;
+template <class T, class Op> Blocks<T> inBlocks(const T* from, int slices, const Op& op) {
+    constexpr std::size_t kPlane = std::size_t(kRow) * kRow;
+    std::array<T, kWindows * kPlane> slabs;
+    std::array<T, std::size_t(kWindows) * kWindows * kRow> bars;
+    Blocks<T> out;
+    inWindows(from, 1, kRow * slices, slices, kPlane, op, slabs.data());
+    inWindows(slabs.data(), kWindows, kRow, 1, kRow, op, bars.data());
+    inWindows(bars.data(), kWindows * kWindows, kRow, 1, 1, op, out.data());
+    return out;
 }
 
 constexpr auto kLesser = [](auto a, auto b) { return std::min(a, b); };
@@ -48,21 +53,16 @@ constexpr auto kGreater = [](auto a, auto b) { return std::max(a, b); };
 /// Writes one brick, and the bounds of its blocks.
 class BrickWriter {
 public:
-    /// `all`: texels from -kMargin on.
-    BrickWriter(PacketVolume& out, glm::ivec3 brick, const volume::BrickSamples& all)
+    /// `rows`: of texels from -kMargin on.
+    BrickWriter(PacketVolume& out, glm::ivec3 brick, const LaidRows& rows)
         : out_(out), brick_(brick), slices_(out.bcc ? 2 : 1) {
+        constexpr std::size_t kPlane = std::size_t(kRow) * kRow;
         const glm::ivec3 first = brick * kBrick * glm::ivec3(1, 1, slices_);
-        values_.reserve(std::size_t(kRow * kRow * kRow * slices_));
-        if (!all.present.empty()) present_.reserve(values_.capacity());
-        for (int z = first.z; z < first.z + kRow * slices_; ++z)
-            for (int y = first.y; y < first.y + kRow; ++y) {
-                const std::ptrdiff_t row = (std::ptrdiff_t(z) * all.size.y + std::ptrdiff_t(y)) * all.size.x + first.x;
-                const auto values = all.values.begin() + row;
-                values_.insert(values_.end(), values, values + kRow);
-                if (all.present.empty()) continue;
-                const auto present = all.present.begin() + row;
-                present_.insert(present_.end(), present, present + kRow);
-            }
+        values_.resize(kPlane * std::size_t(kRow * slices_));
+        if (rows.masked()) present_.resize(values_.size());
+        for (int z = 0; z < kRow * slices_; ++z)
+            rows.read(first + glm::ivec3(0, 0, z), kRow, kRow, &values_[std::size_t(z) * kPlane],
+                      present_.empty() ? nullptr : &present_[std::size_t(z) * kPlane]);
     }
 
     void samples() const {
@@ -70,34 +70,45 @@ public:
         if (out_.exact)
             pairs<float>(out_.floats.data() + base,
                          [&](float value) { return float((double(value) - out_.offset) / out_.scale); });
+        else if (isPlain())
+            pairs<std::int16_t>(out_.shorts.data() + base,
+                                [offset = float(out_.offset), perUnit = float(1 / out_.scale)](float value) {
+                                    const float scaled = (value - offset) * perUnit;
+                                    return std::int16_t(std::min(std::max(0.0f, scaled), float(kQuantum)) + 0.5f);
+                                });
         else
             pairs<std::int16_t>(out_.shorts.data() + base,
                                 [offset = out_.offset, perUnit = 1 / out_.scale](float value) {
                                     const double scaled = (double(value) - offset) * perUnit;
-                                    return std::int16_t(std::clamp(scaled, 0.0, double(kQuantum)) + 0.5);
+                                    return std::int16_t(std::min(std::max(0.0, scaled), double(kQuantum)) + 0.5);
                                 });
         if (present_.empty()) return;
-        std::vector<std::int16_t> flags(present_.size());
+        volume::UnfilledVector<std::int16_t> flags(present_.size());
         std::ranges::transform(present_, flags.begin(), [](bool there) { return std::int16_t(there ? kQuantum : 0); });
-        interleave(flags, out_.present.data() + base);
+        interleave(flags.data(), out_.present.data() + base);
     }
 
     /// The odd sublattice lies half a cell further: its cells around a block begin one earlier, which may lie in the
     /// brick before. Its first samples stand for them here; `spreadOdd` joins the neighbours' bounds.
     void bounds() const {
-        const std::vector<float> lo = inBlocks(bounded(Extent{}.lo), slices_, kLesser),
-                                 hi = inBlocks(bounded(Extent{}.hi), slices_, kGreater);
-        std::vector<std::uint8_t> whole;
-        if (!present_.empty()) whole = inBlocks(present_, slices_, kLesser);
+        Blocks<float> lo, hi;
+        Blocks<std::uint8_t> whole{};
+        if (present_.empty()) {
+            lo = inBlocks(values_.data(), slices_, kLesser);
+            hi = inBlocks(values_.data(), slices_, kGreater);
+        } else {
+            lo = inBlocks(bounded(Extent{}.lo).data(), slices_, kLesser);
+            hi = inBlocks(bounded(Extent{}.hi).data(), slices_, kGreater);
+            whole = inBlocks(present_.data(), slices_, kLesser);
+        }
         const auto scaled = [&](float value) { return float((double(value) - out_.offset) / out_.scale); };
-        constexpr int kWindows = kBrick / kFine;
         for (std::size_t i = 0; i < lo.size(); ++i) {
             const int n = int(i);
             const glm::ivec3 inside(n % kWindows, n / kWindows % kWindows, n / kWindows / kWindows);
             const std::size_t to = number(brick_ * kWindows + inside, out_.blocks);
             out_.lo[to] = lo[i] <= hi[i] ? scaled(lo[i]) : Extent{}.lo;
             out_.hi[to] = lo[i] <= hi[i] ? scaled(hi[i]) : Extent{}.hi;
-            if (!whole.empty()) out_.absent[to] = whole[i] == 0;
+            if (!present_.empty()) out_.absent[to] = whole[i] == 0;
         }
     }
 
@@ -106,25 +117,27 @@ private:
         return (std::size_t(at.z) * std::size_t(count.y) + std::size_t(at.y)) * std::size_t(count.x) +
                std::size_t(at.x);
     }
+    /// Whether floats are precise enough for shorts.
+    bool isPlain() const { return out_.scale > 1e-30 && out_.scale < 1e30; }
     /// The values, with `instead` where they are absent.
-    std::vector<float> bounded(float instead) const {
-        std::vector<float> out = values_;
+    volume::UnfilledVector<float> bounded(float instead) const {
+        volume::UnfilledVector<float> out = values_;
         for (std::size_t i = 0; i < present_.size(); ++i)
             if (present_[i] == 0) out[i] = instead;
         return out;
     }
     /// `store(value)`: what is stored of a present sample.
     template <class T, class Store> void pairs(T* to, const Store& store) const {
-        std::vector<T> own(values_.size());
+        volume::UnfilledVector<T> own(values_.size());
         std::ranges::transform(values_, own.begin(), store);
         for (std::size_t i = 0; i < present_.size(); ++i)
             if (present_[i] == 0) own[i] = 0;
-        interleave(own, to);
+        interleave(own.data(), to);
     }
-    template <class T> void interleave(const std::vector<T>& own, T* to) const {
+    template <class T> void interleave(const T* own, T* to) const {
         for (int s = 0; s < slices_; ++s)
             for (int z = 0; z < kRow; ++z, to += 2 * kSlice) {
-                const T* first = own.data() + std::size_t(z * slices_ + s) * kRow * kRow;
+                const T* first = own + std::size_t(z * slices_ + s) * kRow * kRow;
                 for (int i = 0; i < kSlice; ++i) {
                     to[2 * i] = first[i];
                     to[2 * i + 1] = first[i + kRow];
@@ -135,8 +148,8 @@ private:
     PacketVolume& out_;
     glm::ivec3 brick_;
     int slices_;
-    std::vector<float> values_;
-    std::vector<std::uint8_t> present_; ///< empty: all
+    volume::UnfilledVector<float> values_;
+    volume::UnfilledVector<std::uint8_t> present_; ///< empty: all
 };
 
 /// Every block's value joined with those up to `before` and `after` blocks away along each axis.
@@ -157,6 +170,12 @@ void spread(std::vector<T>& values, glm::ivec3 count, int before, int after, con
 void spreadOdd(PacketVolume& volume) {
     spread(volume.lo, volume.blocks, 1, 0, kLesser);
     spread(volume.hi, volume.blocks, 1, 0, kGreater);
+}
+
+/// A cubic kernel reads a sample more on every side.
+void spreadCubic(PacketVolume& volume) {
+    spread(volume.lo, volume.blocks, 1, 1, kLesser);
+    spread(volume.hi, volume.blocks, 1, 1, kGreater);
 }
 
 /// A block with an absent sample in a neighbour counts as having one: gradients read there, and so do the few samples
@@ -209,7 +228,8 @@ public:
         : source_(source), what_(what), stop_(std::move(stop)), geometry_(volume::levelGeometry(source.grid(), 0)) {
         const volume::DatasetInfo& info = source.info();
         shape_.labels = info.parameters[std::size_t(info.channel(what.channel).parameter)].categorical;
-        filtered_ = what.filter == Filter::AverageQuasi && !shape_.labels;
+        prefilter_ = shape_.labels ? volume::Prefilter::None : prefilterOf(what.filter);
+        shape_.cubic = prefilter_ == volume::Prefilter::Cubic;
         const volume::Lattice& lattice = source.grid().lattice;
         shape_.bcc = lattice.kind == volume::LatticeKind::BCC;
         shape_.exact = what.exact;
@@ -220,15 +240,15 @@ public:
 
     /// Without samples.
     const PacketVolume& shape() const { return shape_; }
-    /// Samples as they are written, texels from -kMargin on, and the range that their scale comes from.
+    /// Samples before they are written, texels from -kMargin on, and the range that their scale comes from.
     struct Read {
-        volume::BrickSamples samples;
+        PaddedSamples samples;
         Extent range;
     };
     /// Filtered samples leave the range of the data, by up to 2/3 of its width but seldom by much, and 15 bits are few:
     /// so shorts have the range of the filtered ones.
     Read read(const std::optional<OnePart>& only) const {
-        const int halo = filtered_ ? 1 : 0;
+        const int halo = volume::prefilterReach(prefilter_, geometry_);
         Read out{readPadded(source_,
                             {.channel = what_.channel,
                              .time = what_.time.earlier,
@@ -237,9 +257,10 @@ public:
                              .count = shape_.bricks * kBrick + (kRow - kBrick + 2 * halo)},
                             stop_),
                  {}};
-        if (!filtered_ || shape_.exact) out.range = extentOf(out.samples);
-        if (filtered_) out.samples = volume::prefilter(out.samples, geometry_);
-        if (filtered_ && !shape_.exact) out.range = extentOf(out.samples);
+        const bool before = shape_.exact || prefilter_ == volume::Prefilter::None;
+        if (before) out.range = extentOf(out.samples);
+        if (prefilter_ == volume::Prefilter::Cubic) out.samples = coefficients(std::move(out.samples));
+        if (!before) out.range = extentOf(out.samples);
         return out;
     }
     void setRange(const Extent& range) {
@@ -249,32 +270,57 @@ public:
         shape_.offset = std::floor(double(some.lo));
         shape_.scale = 1;
     }
-    PacketVolume write(const volume::BrickSamples& all) const {
+    PacketVolume write(const PaddedSamples& all) const {
         PacketVolume out = shape_;
+        const LaidRows rows(all, kind(), prefilter_ == volume::Prefilter::Linear);
         const std::size_t bricks =
             std::size_t(shape_.bricks.x) * std::size_t(shape_.bricks.y) * std::size_t(shape_.bricks.z);
         const std::size_t samples = (bricks * std::size_t(out.stride()) + 1) * 2, blocks = bricks * 64;
+        const auto make = [samples](auto& numbers) {
+            numbers.resize(samples);
+            std::fill(numbers.end() - 2, numbers.end(), 0); // behind the last brick
+        };
         if (out.exact)
-            out.floats.resize(samples);
+            make(out.floats);
         else
-            out.shorts.resize(samples);
-        if (!all.present.empty()) {
-            out.present.resize(samples);
+            make(out.shorts);
+        if (rows.masked()) {
+            make(out.present);
             out.absent.resize(blocks);
         }
         out.lo.resize(blocks);
         out.hi.resize(blocks);
         parallelFor(bricks, [&](std::size_t i) {
-            const BrickWriter writer(out, placeOf(i), all);
+            if (stop_.stop_requested()) throw Cancelled();
+            const BrickWriter writer(out, placeOf(i), rows);
             writer.samples();
             writer.bounds();
         });
-        if (out.bcc) spreadOdd(out);
+        if (out.cubic)
+            spreadCubic(out);
+        else if (out.bcc)
+            spreadOdd(out);
         if (!out.absent.empty()) spreadAbsent(out);
         return out;
     }
 
 private:
+    /// As they are laid out: what the linear prefilter reads beyond the last cell does not count.
+    Extent extentOf(const PaddedSamples& samples) const {
+        if (prefilter_ == volume::Prefilter::Linear && !shape_.exact)
+            return LaidRows(samples, kind(), true).extent((shape_.cells + 1) * glm::ivec3(1, 1, slices()));
+        return LaidRows(samples, kind(), false).extent(samples.size);
+    }
+    PaddedSamples coefficients(PaddedSamples samples) const {
+        const volume::BrickSamples made =
+            volume::cubicCoefficients({.size = samples.size,
+                                       .values = {samples.values.begin(), samples.values.end()},
+                                       .present = std::move(samples.present)},
+                                      geometry_);
+        return {made.size, {made.values.begin(), made.values.end()}, made.present};
+    }
+    volume::LatticeKind kind() const { return source_.grid().lattice.kind; }
+    int slices() const { return shape_.bcc ? 2 : 1; } ///< of a texel
     glm::ivec3 placeOf(std::size_t i) const {
         return {int(i % std::size_t(shape_.bricks.x)),
                 int(i / std::size_t(shape_.bricks.x) % std::size_t(shape_.bricks.y)),
@@ -285,7 +331,7 @@ private:
     const PacketChannel& what_;
     std::stop_token stop_;
     volume::LevelGeometry geometry_;
-    bool filtered_ = false;
+    volume::Prefilter prefilter_ = volume::Prefilter::None;
     PacketVolume shape_;
 };
 

@@ -3,6 +3,7 @@
 #include "vis/scene/scene.h"
 #include "volume/bricks/brick_source.h"
 #include "volume/field/time_pair.h"
+#include "volume/system/unfilled.h"
 
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -28,16 +29,17 @@ struct PacketVolume {
     bool bcc = false;
     bool exact = false;  ///< `floats` hold the samples, else `shorts`
     bool labels = false; ///< never interpolated; samples are whole numbers
+    bool cubic = false;  ///< samples are coefficients of cubic B-splines: Filter::Cubic
     glm::ivec3 cells{1}; ///< of a sublattice, with margins: a position lies in [0, cells)
     glm::ivec3 bricks{1};
-    std::vector<std::int16_t> shorts; ///< 0 .. kQuantum
-    std::vector<float> floats;
+    volume::UnfilledVector<std::int16_t> shorts; ///< 0 .. kQuantum
+    volume::UnfilledVector<float> floats;
     /// kQuantum or 0, at the same places; empty: all samples are present. Between two stored times also the weight of
     /// the one at which a sample is present; the sample has that weight, too.
-    std::vector<std::int16_t> present;
+    volume::UnfilledVector<std::int16_t> present;
     double offset = 0, scale = 1; ///< physical value = offset + scale * sample
-    /// Bounds of the samples that interpolation in a block of kFine^3 cells can read, and whether one is absent. lo >
-    /// hi: all are.
+    /// Bounds of the samples that interpolation, linear or cubic, in a block of kFine^3 cells can read, and whether one
+    /// is absent. lo > hi: all are.
     glm::ivec3 blocks{1};
     std::vector<float> lo, hi;
     std::vector<std::uint8_t> absent; ///< empty: none

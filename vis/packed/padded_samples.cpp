@@ -3,6 +3,7 @@
 #include "volume/base/error.h"
 #include "volume/base/parallel.h"
 #include "volume/bricks/parts_bricks.h"
+#include "volume/reconstruct/reconstruct.h"
 
 #include <algorithm>
 #include <glm/vec2.hpp>
@@ -11,25 +12,6 @@
 namespace tessera::vis::packet {
 
 namespace {
-
-/// Of samples [begin, end).
-Extent extentOf(const volume::BrickSamples& samples, std::size_t begin, std::size_t end) {
-    constexpr std::size_t kTogether = 16; // so that the compiler uses vectors
-    Extent out;
-    float lo[kTogether], hi[kTogether];
-    std::ranges::fill(lo, Extent{}.lo);
-    std::ranges::fill(hi, Extent{}.hi);
-    const std::size_t whole = samples.present.empty() ? begin + (end - begin) / kTogether * kTogether : begin;
-    for (std::size_t s = begin; s < whole; s += kTogether)
-        for (std::size_t i = 0; i < kTogether; ++i) {
-            lo[i] = std::min(lo[i], samples.values[s + i]);
-            hi[i] = std::max(hi[i], samples.values[s + i]);
-        }
-    for (std::size_t s = whole; s < end; ++s)
-        if (samples.isPresent(s)) out.add({samples.values[s], samples.values[s]});
-    for (std::size_t i = 0; i < kTogether; ++i) out.add({lo[i], hi[i]});
-    return out;
-}
 
 /// The array that readPadded() fills.
 class Padding {
@@ -63,7 +45,7 @@ public:
     }
 
     /// Once all bricks are inserted.
-    volume::BrickSamples padded() {
+    PaddedSamples padded() {
         pad(samples_.values);
         if (!samples_.present.empty()) pad(samples_.present);
         return std::move(samples_);
@@ -80,7 +62,7 @@ private:
         return {inside.y, inside.z};
     }
     /// Fills the places where the lattice has no sample with the nearest one: along rows, then whole rows.
-    template <class T> void pad(std::vector<T>& values) const {
+    template <class Values> void pad(Values& values) const {
         const int begin = -first_.x, end = begin + lattice_.size.x;
         const auto eachRow = [&](const auto& visit) {
             parallelFor(std::size_t(samples_.size.z), [&](std::size_t slice) {
@@ -89,12 +71,12 @@ private:
                     visit(values.data() + row(y, z), glm::ivec2(y, z), nearest(y, z));
             });
         };
-        eachRow([&](T* to, glm::ivec2 at, glm::ivec2 from) {
+        eachRow([&](auto* to, glm::ivec2 at, glm::ivec2 from) {
             if (from != at) return;
             std::fill(to, to + begin, to[begin]);
             std::fill(to + end, to + samples_.size.x, to[end - 1]);
         });
-        eachRow([&](T* to, glm::ivec2 at, glm::ivec2 from) {
+        eachRow([&](auto* to, glm::ivec2 at, glm::ivec2 from) {
             if (from != at) std::copy_n(values.data() + row(from.x, from.y), samples_.size.x, to);
         });
     }
@@ -102,7 +84,7 @@ private:
     const volume::Lattice& lattice_;
     int slices_;
     glm::ivec3 first_; ///< storage index of the first sample
-    volume::BrickSamples samples_;
+    PaddedSamples samples_;
     std::once_flag masked_; ///< samples_.present has room for all
 };
 
@@ -112,16 +94,25 @@ void Extent::add(const Extent& other) {
     *this = {std::min(lo, other.lo), std::max(hi, other.hi)};
 }
 
-Extent extentOf(const volume::BrickSamples& samples) {
-    const std::size_t slices = std::size_t(samples.size.z), each = samples.values.size() / slices;
-    std::vector<Extent> own(slices);
-    parallelFor(slices, [&](std::size_t z) { own[z] = extentOf(samples, z * each, (z + 1) * each); });
+Extent extentOf(const float* values, const std::uint8_t* present, std::size_t count) {
+    constexpr std::size_t kTogether = 16; // so that the compiler uses vectors
     Extent out;
-    for (const Extent& slice : own) out.add(slice);
+    float lo[kTogether], hi[kTogether];
+    std::ranges::fill(lo, Extent{}.lo);
+    std::ranges::fill(hi, Extent{}.hi);
+    const std::size_t whole = present == nullptr ? count / kTogether * kTogether : 0;
+    for (std::size_t s = 0; s < whole; s += kTogether)
+        for (std::size_t i = 0; i < kTogether; ++i) {
+            lo[i] = std::min(lo[i], values[s + i]);
+            hi[i] = std::max(hi[i], values[s + i]);
+        }
+    for (std::size_t s = whole; s < count; ++s)
+        if (present == nullptr || present[s] != 0) out.add({values[s], values[s]});
+    for (std::size_t i = 0; i < kTogether; ++i) out.add({lo[i], hi[i]});
     return out;
 }
 
-volume::BrickSamples readPadded(const volume::BrickSource& source, const PaddedRead& what, std::stop_token stop) {
+PaddedSamples readPadded(const volume::BrickSource& source, const PaddedRead& what, std::stop_token stop) {
     const volume::BrickGrid& grid = source.grid();
     Padding padding(grid.lattice, what);
     parallelFor(grid.brickCount(), [&](std::size_t i) {

@@ -26,6 +26,7 @@ struct VolumeView {
     const std::int16_t* present = nullptr; ///< null: all
     bool bcc = false;
     bool labels = false; ///< the nearest sample is read
+    bool cubic = false;  ///< the samples are coefficients of cubic B-splines
     glm::ivec3 cells{1};
     glm::ivec3 perBrick{0};            ///< added to the place of a pair for each brick before it along an axis
     int oddOffset = 0;                 ///< pairs from the even to the odd sublattice

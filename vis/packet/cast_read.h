@@ -2,6 +2,7 @@
 
 #include "vis/lanes/lanes.h"
 #include "vis/packed/packet_volume.h"
+#include "vis/packet/cast_cubic.h"
 #include "vis/packet/cast_job.h"
 #include "vis/scene/lens_bend.h"
 #include "volume/base/vectors.h"
@@ -113,11 +114,17 @@ template <bool Bcc, bool Exact> struct Reader {
         return {own, own.present != nullptr, bends};
     }
     /// The same within loops over samples.
-    [[gnu::always_inline]] Found next(const Fixed& at, Mask lanes) const { return valueOf(around(at, lanes), lanes); }
+    [[gnu::always_inline]] Found next(const Fixed& at, Mask lanes) const {
+        return volume.cubic ? cubic(at, lanes) : valueOf(around(at, lanes), lanes);
+    }
     /// The same of `Count` samples, `way` apart; `at` moves beyond them. First come the places of all, then their
     /// values: so the reads of several samples overlap (1.3 times as fast as one sample after another).
     template <int Count>
     [[gnu::always_inline]] void row(Fixed& at, const Fixed& way, const Mask* lanes, Found* found) const {
+        if (volume.cubic) {
+            for (int i = 0; i < Count; ++i, at += way) found[i] = cubic(at, lanes[i]);
+            return;
+        }
         Around places[Count];
         for (int i = 0; i < Count; ++i) {
             places[i] = around(at, lanes[i]);
@@ -135,7 +142,7 @@ template <bool Bcc, bool Exact> struct Reader {
     [[gnu::noinline]] Found continued(const Vec& cells, Mask lanes) const {
         if (!masked || volume.labels) return (*this)(cells, lanes);
         Floats sum(0), coverage(0);
-        add(around(fixedOf(bends != nullptr ? bent(*bends, cells) : cells), lanes), lanes, sum, coverage);
+        addAt(fixedOf(bends != nullptr ? bent(*bends, cells) : cells), lanes, sum, coverage);
         const Floats weight = coverage * Floats(1.0f / kQuantum / kQuantum);
         return {sum * Floats(Exact ? 1.0f : 1.0f / kQuantum) / larger(weight, Floats(1e-9)),
                 lanes & (weight > Floats(0))};
@@ -218,7 +225,7 @@ private:
         for (int i = 0; i < volume.partCount; ++i) {
             const Reader own = ofPart(i);
             Floats sum(0), coverage(0);
-            own.add(own.around(at, lanes), lanes, sum, coverage);
+            own.addAt(at, lanes, sum, coverage);
             const Floats covered =
                 own.masked ? coverage * Floats((Bcc ? 0.5f : 1.0f) / kQuantum / kQuantum) : Floats(1);
             best = choose(choice.add(i, covered), sum, best);
@@ -266,10 +273,45 @@ private:
     [[gnu::always_inline]] Found valueOf(const Around& at, Mask lanes) const {
         Floats sum(0), coverage(0);
         add(at, lanes, sum, coverage);
+        return valueOf(sum, coverage, lanes);
+    }
+    [[gnu::always_inline]] Found valueOf(Floats sum, Floats coverage, Mask lanes) const {
         if (!masked) return {sum * Floats(kUnit), lanes};
         const Floats covered = coverage * Floats((Bcc ? 0.5f : 1.0f) / kQuantum / kQuantum);
         const Mask present = lanes & (covered >= Floats(volume::kPresentCoverage));
         return {sum * Floats(kUnit) / larger(covered, Floats(1e-9)), present};
+    }
+    /// By cubic B-splines: cast_cubic.h.
+    [[gnu::noinline]] Found cubic(const Fixed& at, Mask lanes) const {
+        Floats sum(0), coverage(0);
+        addCubic(at, lanes, sum, coverage);
+        return valueOf(sum, coverage, lanes);
+    }
+    void addCubic(const Fixed& at, Mask lanes, Floats& sum, Floats& coverage) const {
+        addCubic(at, 0, lanes, sum, coverage);
+        if constexpr (Bcc) addCubic(oddOf(at), volume.oddOffset, lanes, sum, coverage);
+    }
+    void addCubic(const Fixed& at, int offset, Mask lanes, Floats& sum, Floats& coverage) const {
+        const CubicReads x = cubicReads(at.x, volume.cells.x), y = cubicReads(at.y, volume.cells.y),
+                         z = cubicReads(at.z, volume.cells.z);
+        for (int n = 0; n < 8; ++n) {
+            const auto place = [&](const CubicReads& of, int bit) { return (n & bit) != 0 ? of.high : of.low; };
+            const auto share = [&](const CubicReads& of, int bit) {
+                return (n & bit) != 0 ? of.share : Floats(1) - of.share;
+            };
+            const Fixed read{place(x, 1), place(y, 2), place(z, 4)};
+            const Floats weight = share(x, 1) * share(y, 2) * share(z, 4);
+            Floats own(0), covered(0);
+            add(cornerAt(volume, read, lanes), offset, lanes, own, covered);
+            sum = multiplyAdd(weight, own, sum);
+            coverage = multiplyAdd(weight, covered, coverage);
+        }
+    }
+    void addAt(const Fixed& at, Mask lanes, Floats& sum, Floats& coverage) const {
+        if (volume.cubic)
+            addCubic(at, lanes, sum, coverage);
+        else
+            add(around(at, lanes), lanes, sum, coverage);
     }
     [[gnu::always_inline]] void add(const Around& at, Mask lanes, Floats& sum, Floats& coverage) const {
         add(at.grids[0], 0, lanes, sum, coverage);

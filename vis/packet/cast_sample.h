@@ -66,7 +66,7 @@ template <bool Bcc, bool Exact> struct SampleCaster {
         if (read.volume.partCount > 0) return gradientOfParts(read, cells, lanes);
         count(lanes, 2 * job.stencil.count);
         if (packet.bends) return gradientBehindLenses(read, cells, lanes);
-        if (!Exact && !read.masked && sharesReads(job.stencil, Bcc))
+        if (!Exact && !read.masked && !read.volume.cubic && sharesReads(job.stencil, Bcc))
             return sharedGradient<Bcc>(read.volume, cells, job.stencil.reach, lanes) / spreadOut<Floats>(job.box.edges);
         return volume::gradientOf<Floats>(value, cells, job.stencil) / spreadOut<Floats>(job.box.edges);
     }

@@ -42,7 +42,7 @@ std::vector<LayerSamples> layerSamples(const Scene& scene, const volume::Dataset
     for (const DrawnLayer& layer : drawn.layers) {
         const Filter filter = scene.render.filter;
         // Before interpolation samples themselves are classified.
-        const bool raw = layer.classification == Classification::Pre && filter == Filter::AverageQuasi;
+        const bool raw = layer.classification == Classification::Pre && prefilterOf(filter) != volume::Prefilter::None;
         out.push_back({layer, samplesOf(layer.shown, raw ? Filter::Average : filter)});
         if (layer.colors) out.back().colors = samplesOf(*layer.colors, filter);
     }

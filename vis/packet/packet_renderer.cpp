@@ -236,6 +236,19 @@ void PacketRenderer::prepare(const Scene& scene) {
 void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture,
                           const PacketGeometry& geometry) {
     const PixelBox& box = picture.box;
+    const glm::ivec2 tiles = (box.extent() + kTile - 1) / kTile;
+    std::vector<PixelBox> all;
+    for (int y = 0; y < tiles.y; ++y)
+        for (int x = 0; x < tiles.x; ++x) {
+            const glm::ivec2 begin = box.begin + kTile * glm::ivec2(x, y);
+            all.push_back({begin, glm::min(begin + kTile, box.end)});
+        }
+    draw(scene, pass, passes, stepFactor, picture, geometry, all);
+}
+
+void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture,
+                          const PacketGeometry& geometry, std::span<const PixelBox> only) {
+    const PixelBox& box = picture.box;
     if (!scene_ || (scene_->empty() && geometry.peels == 0)) return;
     CastJob job = scene_->job(scene, source().info(), source().grid().lattice, picture.size, stepFactor, packedLight_);
     job.jitter = glm::vec2(pixelJitter(pass));
@@ -250,12 +263,10 @@ void PacketRenderer::draw(const Scene& scene, int pass, int passes, double stepF
     job.peelDistance = geometry.distance.data();
     job.peelColor = geometry.color.data();
     job.samples = counts_ ? &samples_ : nullptr;
-    const glm::ivec2 tiles = (box.extent() + kTile - 1) / kTile;
     const auto cast = compiledFor(with_).castPixels;
-    parallelFor(std::size_t(tiles.x) * std::size_t(tiles.y), [&](std::size_t i) {
-        const glm::ivec2 begin =
-            box.begin + kTile * glm::ivec2(int(i % std::size_t(tiles.x)), int(i / std::size_t(tiles.x)));
-        cast(job, begin, glm::min(begin + kTile, box.end));
+    parallelFor(only.size(), [&](std::size_t i) {
+        const glm::ivec2 begin = glm::max(only[i].begin, box.begin), end = glm::min(only[i].end, box.end);
+        if (begin.x < end.x && begin.y < end.y) cast(job, begin, end);
     });
 }
 

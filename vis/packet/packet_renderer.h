@@ -6,6 +6,7 @@
 #include <functional>
 #include <future>
 #include <optional>
+#include <span>
 #include <stop_token>
 
 /// The ray caster on the processor's vector units: pictures without OpenGL.
@@ -125,6 +126,9 @@ public:
     /// Adds one pass of a picture with `passes` of them; after prepare(). `geometry`: of the same box.
     void draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture,
               const PacketGeometry& geometry = {});
+    /// The same for some boxes of the picture's own alone.
+    void draw(const Scene& scene, int pass, int passes, double stepFactor, PacketPicture& picture,
+              const PacketGeometry& geometry, std::span<const PixelBox> only);
     /// The whole picture with all passes, lit as the scene says; `surroundings` of Environment::Picture.
     PacketPicture render(const Scene& scene, glm::ivec2 size, const CubeMap* surroundings = nullptr);
 

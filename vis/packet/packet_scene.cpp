@@ -24,6 +24,7 @@ VolumeView viewOf(const PacketVolume& volume) {
     view.present = volume.present.empty() ? nullptr : volume.present.data();
     view.bcc = volume.bcc;
     view.labels = volume.labels;
+    view.cubic = volume.cubic;
     view.cells = volume.cells;
     view.oddOffset = volume.brickPairs();
     view.partCount = int(volume.parts.size());

@@ -45,17 +45,12 @@ bool findSamples(RendererState& shared, ViewTarget& target, const RenderCall& ca
         renderer->setMixes(call.request.moving && !call.request.wait);
     bool all = call.request.wait || packets.full.has(call.scene), some = false;
     if (!all) {
-        if (!packets.lackingSince) packets.lackingSince = Clock::now();
-        const bool brief = target.state.presented() && !call.request.moving &&
-                           millisecondsSince(*packets.lackingSince) < shared.options.patience;
-        if (shared.coarseVolumes && !brief) some = packets.coarse.request(call.scene);
+        if (shared.coarseVolumes) some = packets.coarse.request(call.scene);
         // Reading all of large data leaves little to others, so their picture is drawn first; and who drags through
         // time must not start more reading than memory can hold.
         const bool drawn = some && showsCoarse(target, call.request.moving);
-        if (!shared.coarseVolumes || ((drawn || brief) && !shared.volumes->reading()))
-            all = packets.full.request(call.scene);
+        if (!shared.coarseVolumes || (drawn && !shared.volumes->reading())) all = packets.full.request(call.scene);
     }
-    if (all) packets.lackingSince.reset();
     if (all || some) useSamples(target, !all);
     return all || some;
 }
@@ -129,7 +124,6 @@ bool chooseEngine(RendererState& shared, ViewTarget& target, const RenderCall& c
     packets.coarse.setVolumes(shared.coarseVolumes);
     if (packets.full.setVolumes(shared.volumes)) {
         packets.failed = packets.isCoarse = false;
-        packets.lackingSince.reset();
         ++packets.revision;
     }
     const std::size_t limit =

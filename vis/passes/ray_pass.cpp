@@ -46,16 +46,34 @@ void proxies(const Program& program, const RenderCall& call, const RayBuffer& bu
     glDisable(GL_BLEND);
 }
 
+/// Begins the picture of packets with a tile, and what was rasterised there.
+void beginPackets(const RayPrograms& programs, const RayBuffer& buffer, const RayTile& what) {
+    PacketView& packets = *programs.packets;
+    packets.picture.begin(what.size, {what.tile.begin, what.tile.end}, what.pass == 0);
+    packets.geometry.peels = 0;
+    if (programs.geometry)
+        readGeometry(*programs.geometry, buffer.first + what.tile.begin, what.tile.end - what.tile.begin,
+                     packets.geometry);
+}
+
 /// Draws a tile with the rays of one pass; replaces all but termination depths, which rays of the processor have not.
 void castPackets(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what) {
     PacketView& packets = *programs.packets;
-    const Tile& tile = what.tile;
-    const glm::ivec2 at = buffer.first + tile.begin, extent = tile.end - tile.begin;
-    packet::PacketPicture& picture = packets.picture;
-    picture.begin(what.size, {tile.begin, tile.end}, what.pass == 0);
-    packets.geometry.peels = 0;
-    if (programs.geometry) readGeometry(*programs.geometry, at, extent, packets.geometry);
-    packets.renderer().draw(call.scene, what.pass, 1, what.stepFactor, picture, packets.geometry);
+    beginPackets(programs, buffer, what);
+    packets.renderer().draw(call.scene, what.pass, 1, what.stepFactor, packets.picture, packets.geometry);
+    storePackets(packets.picture, buffer);
+}
+
+/// The pixels of the box in a picture of `size` pixels: rays are cast for these only.
+Tile seenPixels(const RenderCall& call, glm::ivec2 size) {
+    const glm::ivec4 box = boxPixels(call.scene.camera, call.frame().halfSize, size);
+    return {{box.x, box.y}, {box.z, box.w}};
+}
+
+} // namespace
+
+void storePackets(const packet::PacketPicture& picture, const RayBuffer& buffer) {
+    const glm::ivec2 at = buffer.first + picture.box.begin, extent = picture.box.extent();
     const auto store = [&](const Texture& texture, GLenum parts, const std::vector<float>& values) {
         glTextureSubImage2D(texture.name(), 0, at.x, at.y, extent.x, extent.y, parts, GL_FLOAT, values.data());
     };
@@ -63,7 +81,15 @@ void castPackets(const RayPrograms& programs, const RenderCall& call, const RayB
     if (!picture.pick.empty()) store(buffer.pick, GL_RED, picture.pick);
 }
 
-} // namespace
+void castBoxes(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what,
+               std::span<const packet::PixelBox> boxes) {
+    PacketView& packets = *programs.packets;
+    RayTile seen = what;
+    seen.tile = intersection(what.tile, seenPixels(call, what.size));
+    if (seen.tile.empty()) return packets.picture.begin(what.size, {}, false);
+    beginPackets(programs, buffer, seen);
+    packets.renderer().draw(call.scene, what.pass, 1, what.stepFactor, packets.picture, packets.geometry, boxes);
+}
 
 ProgramRecipe rayVariant(const RendererState& shared, const ViewTarget& target, const Scene& scene,
                          const RayPlan& plan) {
@@ -129,9 +155,7 @@ void castRays(RendererState& shared, const RayPrograms& programs, const RenderCa
         glClearTexSubImage(buffer.pick.name(), 0, part.begin.x, part.begin.y, 0, extent.x, extent.y, 1, GL_RG, GL_FLOAT,
                            nowhere);
     };
-    // Rays are cast for the pixels of the box only.
-    const glm::ivec4 box = boxPixels(scene.camera, call.frame().halfSize, size);
-    const Tile seen = intersection(tile, {{box.x, box.y}, {box.z, box.w}});
+    const Tile seen = intersection(tile, seenPixels(call, size));
     const Tile held{buffer.drawn.begin - buffer.first, buffer.drawn.end - buffer.first};
     buffer.drew(texels(tile), seen.empty() ? Tile{} : texels(seen));
     if (programs.packets) { // these replace what is there, and find no termination depths

@@ -2,6 +2,8 @@
 
 #include "vis/passes/renderer_state.h"
 
+#include <span>
+
 /// Casts the rays of a tile, by OpenGL or the processor, into the buffers of a view.
 namespace tessera::vis {
 
@@ -36,6 +38,13 @@ void rasteriseGeometry(RendererState& shared, ViewTarget& target, const RenderCa
 /// Draws a tile with the rays of one pass.
 void castRays(RendererState& shared, const RayPrograms& programs, const RenderCall& call, RayBuffer& buffer,
               const RayTile& what);
+
+/// Puts the picture of packets into the buffer of the whole picture.
+void storePackets(const packet::PacketPicture& picture, const RayBuffer& buffer);
+
+/// Casts the rays of one pass by packets for boxes of a tile alone, into their picture, which is empty elsewhere.
+void castBoxes(const RayPrograms& programs, const RenderCall& call, const RayBuffer& buffer, const RayTile& what,
+               std::span<const packet::PixelBox> boxes);
 
 /// Draws pass n > 0 of a supersampled frame into a second buffer and blends it into the first with weight 1 / (n + 1).
 /// (Blending in the ray-casting program itself would make software GL compile it again. Picking keeps the pixel

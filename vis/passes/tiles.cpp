@@ -103,9 +103,42 @@ void castTile(RendererState& shared, ViewTarget& target, const RenderCall& call,
     target.pace().timeTile(draw, tile.area(), pass == 0);
 }
 
+/// Casts the rays of a pass after the first by packets, where a tile needs them; their picture is then what is known of
+/// the tile. False if that is nothing new.
+bool addRays(RendererState& shared, ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+             const Tile& tile, int pass) {
+    const glm::ivec2 size = target.buffers.size;
+    RayBuffer& full = target.buffers.full;
+    AddedRays& added = target.packets.added;
+    const bool predicts = added.choose(tile);
+    const std::vector<packet::PixelBox> boxes = added.blocks(tile);
+    if (!boxes.empty()) {
+        rasteriseGeometry(shared, target, call, full, target.state.stale(), pass);
+        const auto draw = [&] { castBoxes(programs, call, full, {.size = size, .tile = tile, .pass = pass}, boxes); };
+        target.pace().timeTile(draw, tile.area(), false);
+        added.take(target.packets.picture, tile, pass);
+    } else if (!predicts) {
+        return false;
+    }
+    added.show(tile, target.packets.picture);
+    storePackets(target.packets.picture, full);
+    return true;
+}
+
+/// Casts the rays of a pass of a tile; false if its picture has not changed.
+bool castPass(RendererState& shared, ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
+              const Tile& tile, int pass) {
+    if (programs.packets && pass > 0) return addRays(shared, target, call, programs, tile, pass);
+    if (programs.packets) programs.packets->picture.begin(target.buffers.size, {}, false); // it may show nothing
+    castTile(shared, target, call, programs, tile, pass);
+    if (programs.packets && raysPerPixel(call.scene) > 1) target.packets.added.takeFirst(target.packets.picture, tile);
+    return true;
+}
+
 /// Draws one tile of a pass, with depth of field from the pass's place on the lens, and presents it.
 void drawTile(RendererState& shared, ViewTarget& target, const RenderCall& call, const RayPrograms& programs,
               const Tile& tile, int pass) {
+    bool changed = true;
     if (pass > 0 && call.scene.camera.aperture > 0) {
         Scene seen = call.scene;
         seen.camera = lensCamera(seen.camera, pass, raysPerPixel(seen));
@@ -116,17 +149,24 @@ void drawTile(RendererState& shared, ViewTarget& target, const RenderCall& call,
                               .beyondPlan = {},
                               .beyondScene = {}};
         setUniforms(all, target, own, 1);
-        castTile(shared, target, own, all, tile, pass);
+        changed = castPass(shared, target, own, all, tile, pass);
     } else {
-        if (programs.packets) programs.packets->picture.begin(target.buffers.size, {}, false); // it may show nothing
-        castTile(shared, target, call, programs, tile, pass);
+        changed = castPass(shared, target, call, programs, tile, pass);
     }
-    if (programs.packets && pass == 0 && presentsPlainly(call.scene))
+    target.state.drewTile();
+    if (!changed) return;
+    if (programs.packets && presentsPlainly(call.scene))
         presentPackets(shared, target, call.scene, tile);
     else
         present(shared, target, call.scene, target.buffers.full, tile);
     glBindTextureUnit(0, call.plan.fields[0].texture);
-    target.state.drewTile();
+}
+
+/// Whether packets, after all passes, have chosen pixels for further rays, whose passes follow.
+bool morePasses(ViewTarget& target, const RayPrograms& programs, int perPass) {
+    if (!programs.packets || !target.packets.added.chooseMore()) return false;
+    target.state.repeatAfter(perPass);
+    return true;
 }
 
 /// Draws the stale area tile by tile within the budget: a first pass, then passes with jittered rays for the
@@ -135,14 +175,21 @@ void drawTiles(RendererState& shared, ViewTarget& target, const RenderCall& call
                Clock::time_point start, bool lit) {
     const FrameRequest& request = call.request;
     PictureState& state = target.state;
-    if (state.tilesDone() == 0) target.pace().beginPass(request.wait, request.budgetMs);
+    AddedRays& added = target.packets.added;
+    const bool adds = programs.packets && raysPerPixel(call.scene) > 1;
+    if (adds && state.tilesDone() > 0 && !added.holds(target.buffers.size, state.stale()))
+        target.redraw(state.stale()); // something else has cast the first rays
+    if (state.tilesDone() == 0) {
+        target.pace().beginPass(request.wait, request.budgetMs);
+        if (adds) added.begin(call.scene, target.buffers.size, state.stale());
+    }
     const std::vector<Tile> tiles =
         programs.packets && state.half()
             ? tilesByContrast(state.stale(), target.pace().tileEdge(), target.buffers.size, target.packets.contrast)
             : tilesFromMiddle(state.stale(), target.pace().tileEdge());
     setUniforms(programs, target, call, 1);
     const int perPass = int(tiles.size()), wanted = perPass * raysPerPixel(call.scene);
-    for (bool first = true; state.tilesDone() < wanted; first = false) {
+    for (bool first = true; state.tilesDone() < wanted || morePasses(target, programs, perPass); first = false) {
         const Tile& tile = tiles[std::size_t(state.tilesDone() % perPass)];
         const double left = request.budgetMs - millisecondsSince(start);
         if (!request.wait && !first && !target.pace().fits(tile.area(), left)) break;
@@ -157,7 +204,9 @@ void drawTiles(RendererState& shared, ViewTarget& target, const RenderCall& call
         present(shared, target, call.scene, target.buffers.full, target.buffers.everything());
         glBindTextureUnit(0, call.plan.fields[0].texture);
     }
-    if (state.tilesDone() >= wanted && lit) state.setDone(PictureState::Done::Converged);
+    if (state.tilesDone() < wanted || !lit) return;
+    state.setDone(PictureState::Done::Converged);
+    added = {};
 }
 
 } // namespace

@@ -117,7 +117,8 @@ Piece Pieces::operator[](std::uint32_t number) const {
         const glm::dvec3 normal = mesh.normals.empty() ? glm::dvec3(0) : glm::dvec3(mesh.normals[v]);
         corners[to] = {.world = corner(layer, triangle[i]),
                        .direction = normal / frame_.scale,
-                       .value = mesh.scalars.empty() ? 0 : double(mesh.scalars[v])};
+                       .value = mesh.scalars.empty() ? 0 : double(mesh.scalars[v]),
+                       .stroke = geometry.strokes.empty() ? 0 : double(geometry.strokes[v])};
         seen[to] = pixels(corners[to].world);
     }
     return {Triangle(seen), corners, &layer, geometry.tints.empty() ? kNoTint : geometry.tints[triangle.z], false};

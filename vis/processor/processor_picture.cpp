@@ -1,5 +1,6 @@
 #include "vis/processor/processor_picture.h"
 
+#include "vis/demand/added_rays.h"
 #include "vis/demand/box_lines.h"
 #include "vis/image/light_picture.h"
 #include "vis/optics/jitter.h"
@@ -36,6 +37,32 @@ std::optional<CubeMap> surroundingsIn(const EnvironmentLight& light, const std::
     }
 }
 
+/// Makes a picture of first rays that of all. Returns how many were cast for a pixel.
+template <class Geometry>
+double castFurther(packet::PacketRenderer& renderer, const Scene& scene, const Geometry& geometry,
+                   packet::PacketPicture& picture) {
+    const Tile all{picture.box.begin, picture.box.end};
+    const int passes = raysPerPixel(scene);
+    AddedRays added;
+    added.begin(scene, picture.size, all);
+    added.takeFirst(picture, all);
+    added.choose(all);
+    packet::PacketPicture own{.box = {}, .rgba = {}};
+    do {
+        const std::vector<packet::PixelBox> boxes = added.blocks(all);
+        for (int pass = 1; pass < passes && !boxes.empty(); ++pass) {
+            Scene seen = scene;
+            seen.camera = lensCamera(seen.camera, pass, passes);
+            own.begin(picture.size, picture.box, false);
+            renderer.draw(seen, pass, 1, 1, own, geometry(seen, pass), boxes);
+            added.take(own, all, pass);
+        }
+    } while (added.chooseMore());
+    added.show(all, own);
+    picture.rgba = std::move(own.rgba); // the first rays are picked
+    return 1 + added.share() * (passes - 1);
+}
+
 } // namespace
 
 void ProcessorPicture::draw(const Scene& scene, glm::ivec2 size, const Data& data,
@@ -53,13 +80,11 @@ void ProcessorPicture::draw(const Scene& scene, glm::ivec2 size, const Data& dat
         const std::optional<CubeMap> surroundings = surroundingsIn(scene.lighting.environment, say);
         const packet::SceneLight light = renderer_.lightOf(scene, surroundings ? &*surroundings : nullptr);
         renderer_.setLight(light);
-        const int passes = raysPerPixel(scene);
-        for (int pass = 0; pass < passes; ++pass) {
-            Scene seen = scene;
-            seen.camera = lensCamera(seen.camera, pass, passes);
-            renderer_.draw(seen, pass, passes, 1, made,
-                           rasterized(seen, source.info(), light, size, pixelJitter(pass)));
-        }
+        const auto geometry = [&](const Scene& seen, int pass) {
+            return rasterized(seen, source.info(), light, size, pixelJitter(pass));
+        };
+        renderer_.draw(scene, 0, 1, 1, made, geometry(scene, 0));
+        raysCast_ = raysPerPixel(scene) > 1 ? castFurther(renderer_, scene, geometry, made) : 1;
         if (scene.showBox) lines = boxLines(scene.camera, worldFrame(source.info(), scene.stretch).halfSize, size);
     }
     texture_.size = size;

@@ -24,6 +24,8 @@ public:
     packet::InstructionSet instructions() const { return renderer_.instructions(); }
     /// Before the background.
     const packet::PacketPicture& linear() const { return linear_; }
+    /// Rays that were cast for a pixel, on the mean.
+    double raysCast() const { return raysCast_; }
     /// As it is shown, rows bottom up.
     const MemoryTexture& texture() const { return texture_; }
 
@@ -32,6 +34,7 @@ private:
     std::shared_ptr<packet::PacketVolumes> volumes_; ///< of the picture
     Scene scene_;                                    ///< of the picture
     packet::PacketPicture linear_{.box = {}, .rgba = {}};
+    double raysCast_ = 0;
     MemoryTexture texture_{.rgba = {}};
 };
 

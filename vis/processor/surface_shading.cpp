@@ -120,6 +120,7 @@ std::optional<SurfaceColor> SurfaceShading::operator()(const SurfaceLayer& layer
         return SurfaceColor{along(world), glm::dvec4(ownColor(layer, spot.here.value) * opacity, opacity)};
     }
     glm::dvec3 color = tint.r >= 0 ? glm::dvec3(glm::vec3(tint)) : ownColor(layer, spot.here.value);
+    color = withStrokes(color, spot.here.stroke, double(layer.layer->style.strokes));
     color = glm::mix(glm::dvec3(luminance(color)), color, action.saturation);
     const Look& look = layer.layer->style.look;
     if (look.any()) {

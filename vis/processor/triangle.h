@@ -14,11 +14,12 @@ struct SurfacePoint {
     glm::dvec3 world{0};
     glm::dvec3 direction{0}; ///< normal of a mesh, not normalised, or along the line
     double value = 0;
-    double side = 0; ///< -1..1 across a line
+    double side = 0;   ///< -1..1 across a line
+    double stroke = 0; ///< Geometry::strokes
 
-    SurfacePoint operator*(double f) const { return {world * f, direction * f, value * f, side * f}; }
+    SurfacePoint operator*(double f) const { return {world * f, direction * f, value * f, side * f, stroke * f}; }
     SurfacePoint operator+(const SurfacePoint& b) const {
-        return {world + b.world, direction + b.direction, value + b.value, side + b.side};
+        return {world + b.world, direction + b.direction, value + b.value, side + b.side, stroke + b.stroke};
     }
 };
 

@@ -97,7 +97,8 @@ RayLayer volumeUse(RayPlan& plan, const DrawnLayer& drawn, Filter filter) {
     else if (drawn.classification == Classification::PreIntegrated)
         use.lookup = RayLookup::Slab;
     if (use.lookup == RayLookup::Plane || use.lookup == RayLookup::Slab) use.page = plan.pages++;
-    use.field = fieldOf(plan, drawn.shown, use.lookup == RayLookup::Lattice && filter == Filter::AverageQuasi);
+    use.field =
+        fieldOf(plan, drawn.shown, use.lookup == RayLookup::Lattice && prefilterOf(filter) != volume::Prefilter::None);
     return use;
 }
 

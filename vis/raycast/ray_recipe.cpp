@@ -27,11 +27,14 @@ struct Defines {
     }
 };
 
-void addFields(Defines define, const RayPlan& plan) {
+void addFields(Defines define, const RayPlan& plan, bool cubic) {
     define.number("FIELDS", plan.fields.size());
     define.number("LATER", std::size_t(plan.later));
     define.each("FIELD_COVERAGE(i)", plan.fields, [](const BoundField& field) { return field.encoding.coverage; });
     define.each("FIELD_NEAREST(i)", plan.fields, [](const BoundField& field) { return field.nearest; });
+    define.flag("CUBIC", cubic);
+    define.each("FIELD_CUBIC(i)", plan.fields,
+                [=](const BoundField& field) { return cubic && !field.nearest && !field.raw; });
     define.flag("PARTS", std::ranges::any_of(plan.fields, [](const BoundField& field) { return field.parts > 1; }));
     define.each("FIELD_PARTS(i)", plan.fields, [](const BoundField& field) { return field.parts; });
     define.each("FIELD_MORE(i)", plan.fields, [](const BoundField& field) { return field.more; });
@@ -116,6 +119,13 @@ void addLattice(Defines define, const Scene& scene, const volume::BrickGrid& gri
     define.text("REFERENCE_LENGTHS", std::to_string(1 / kReferenceLength));
 }
 
+std::string reconstruction(volume::LatticeKind kind, Filter filter) {
+    const bool cubic = filter == Filter::Cubic;
+    if (kind != volume::LatticeKind::BCC) return cubic ? "slots/recon_cc_cubic.glsl" : "slots/recon_cc_linear.glsl";
+    if (filter == Filter::Tetrahedral) return "slots/recon_bcc_tetrahedral.glsl";
+    return cubic ? "slots/recon_bcc_cubic.glsl" : "slots/recon_bcc_average.glsl";
+}
+
 } // namespace
 
 ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::BrickGrid& grid, bool skip) {
@@ -126,11 +136,9 @@ ProgramRecipe rayRecipe(const RayPlan& plan, const Scene& scene, const volume::B
     recipe.fragment = proxy ? "proxy.frag.glsl" : "raycast.frag.glsl";
     recipe.slots["fetch"] = bricked ? "slots/fetch_bricked.glsl" : "slots/fetch_dense.glsl";
     recipe.slots["skip"] = skip ? "slots/skip_distance.glsl" : "slots/skip_none.glsl";
-    recipe.slots["reconstruct"] = grid.lattice.kind != volume::LatticeKind::BCC ? "slots/recon_cc_linear.glsl"
-                                  : scene.render.filter == Filter::Tetrahedral  ? "slots/recon_bcc_tetrahedral.glsl"
-                                                                                : "slots/recon_bcc_average.glsl";
+    recipe.slots["reconstruct"] = reconstruction(grid.lattice.kind, scene.render.filter);
     Defines define{recipe};
-    addFields(define, plan);
+    addFields(define, plan, scene.render.filter == Filter::Cubic);
     addLayers(define, plan);
     addNeeds(define, plan);
     addSlices(define, plan);

@@ -157,6 +157,7 @@ void setRayUniforms(const Program& program, const RayPlan& plan, const Scene& sc
     program.set("gradientDirections", stencil.count);
     program.set("diagonals", 4);
     program.set("bisections", kBisections);
+    program.set("cubicCorners", 8);
     program.set("latticeCorners", grid.lattice.kind == volume::LatticeKind::BCC ? 16 : 8);
     setLightUniforms(program, scene, frame, rayUnits(plan).light);
     setClipUniforms(program, scene, frame);

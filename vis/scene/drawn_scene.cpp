@@ -28,8 +28,7 @@ std::optional<DrawnLayer> drawnLayer(const Scene& scene, const volume::DatasetIn
                      .lens = lens.value_or(-1),
                      .brushes = layer.brushes,
                      .shown = {}};
-    const bool polygons = drawn.surface && drawn.surface->method == SurfaceMethod::Polygons;
-    const bool rays = drawn.volume || drawn.slice || (drawn.surface && !polygons);
+    const bool rays = drawn.volume || drawn.slice || (drawn.surface && !drawn.surface->meshed());
     if (!layer.visible || !channel || !lens || !rays) return std::nullopt;
     // A layer's own function is that of its values, of a surface coloured by another channel that of its colours.
     const std::optional<int> colors = info.findChannel(colorByOf(layer.technique));

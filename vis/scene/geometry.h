@@ -42,6 +42,10 @@ struct Geometry {
     /// triangle has the tint of its last vertex. Opacities multiply that of the style.
     std::vector<glm::vec4> tints;
     bool translucent = false; ///< some tint has an opacity below 1
+    /// By how much the vertices of the mesh are lighter or darker, -1..1 with mean 0 (withStrokes, vis/formulas), or
+    /// empty.
+    std::vector<float> strokes = {};
+    std::vector<std::string> notes = {}; ///< what of it is coarser than the data, or left out, for users
 };
 
 struct GeometryLayer {
@@ -58,6 +62,9 @@ struct GeometryLayer {
 /// closed meshes of it whose normals point outwards, which hides what is farther away (line drawings that overlap come
 /// apart: A. Appel, F. J. Rohlf, A. J. Stein: The haloed line effect for hidden line elimination, SIGGRAPH 1979).
 std::vector<GeometryLayer> withHalos(const std::vector<GeometryLayer>& layers, glm::vec3 color);
+
+/// A note on what is computed at a level of detail: "flow of U: from every 4th sample along each axis".
+std::string coarserText(const std::string& what, int level);
 
 /// Number of depth-peeling layers per pixel if some surfaces are translucent. Surfaces behind the last one are omitted.
 inline constexpr int kPeels = 4;

@@ -80,10 +80,11 @@ struct VolumeLayer {
     }
 };
 
-enum class SurfaceMethod { Rays, Polygons };
-inline constexpr std::string_view kSurfaceMethodNames[] = {"rays", "polygons"};
+enum class SurfaceMethod { Rays, Polygons, SpaceTime };
+inline constexpr std::string_view kSurfaceMethodNames[] = {"rays", "polygons", "spaceTime"};
 
-/// An iso-surface: either intersected by rays, refined by bisection, or extracted as a mesh.
+/// An iso-surface: intersected by rays, refined by bisection; extracted as a mesh; or cut from the surface in space and
+/// time (volume/four).
 struct IsoLayer {
     static constexpr std::string_view kType = "iso";
     std::string channel;
@@ -92,7 +93,10 @@ struct IsoLayer {
     float opacity = 1;
     SurfaceMethod method = SurfaceMethod::Rays;
     std::string colorBy = {}; ///< colouring channel; "": `color`
+    Strokes strokes = {};
     Look look = {};
+    /// Whether it is drawn as a mesh: strokes need one.
+    bool meshed() const { return method != SurfaceMethod::Rays || !strokes.vector.empty(); }
     bool operator==(const IsoLayer&) const = default;
     static void describe(auto& self, auto&& visit) {
         visit(self.channel,
@@ -102,12 +106,16 @@ struct IsoLayer {
         visit(self.opacity, FieldInfo{.key = "opacity", .doc = "Opacity of the surface", .range = Range{0, 1}});
         visit(self.method,
               FieldInfo{.key = "method",
-                        .doc = "Intersect each ray with the surface, or extract the surface once as polygons",
+                        .doc = "Intersect each ray with the surface (rays), extract the surface of the time shown as "
+                               "polygons, or cut it from the surface in space and time, which is made of tetrahedra "
+                               "between the samples of two stored times (spaceTime): slower and no more exact. A "
+                               "surface with strokes is one of polygons",
                         .names = kSurfaceMethodNames});
         visit(self.colorBy, FieldInfo{.key = "colorBy",
                                       .doc = "Parameter whose transfer function colours the surface; where it has no "
                                              "value the surface has its own colour",
                                       .refersTo = "colorChannel"});
+        visit(self.strokes, strokesField());
         visit(self.look, lookField());
     }
 };

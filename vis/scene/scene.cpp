@@ -34,6 +34,12 @@ int peelsOf(const Scene& scene) {
     return peels;
 }
 
+std::string coarserText(const std::string& what, int level) {
+    const int step = 1 << level;
+    const char* const ending = step == 2 ? "nd" : "th";
+    return what + ": from every " + std::to_string(step) + ending + " sample along each axis";
+}
+
 std::vector<GeometryLayer> withHalos(const std::vector<GeometryLayer>& layers, glm::vec3 color) {
     std::vector<GeometryLayer> out;
     for (const GeometryLayer& layer : layers) {

@@ -12,6 +12,7 @@
 #include "vis/scene/tone.h"
 #include "vis/transfer/transfer_function.h"
 #include "volume/reconstruct/gradient.h"
+#include "volume/reconstruct/prefilter.h"
 
 #include <map>
 #include <optional>
@@ -20,8 +21,14 @@
 
 namespace tessera::vis {
 
-enum class Filter { AverageQuasi, Average, Tetrahedral };
-inline constexpr std::string_view kFilterNames[] = {"quasi", "average", "tetrahedral"};
+enum class Filter { AverageQuasi, Average, Tetrahedral, Cubic };
+inline constexpr std::string_view kFilterNames[] = {"quasi", "average", "tetrahedral", "cubic"};
+/// What samples are filtered by before a filter reads them.
+constexpr volume::Prefilter prefilterOf(Filter filter) {
+    return filter == Filter::AverageQuasi ? volume::Prefilter::Linear
+           : filter == Filter::Cubic      ? volume::Prefilter::Cubic
+                                          : volume::Prefilter::None;
+}
 
 /// How composite volumes are sampled; see vis/shapes/proxy.h.
 enum class Proxy { Rays, Slices, Shells, Stacks };
@@ -33,10 +40,10 @@ inline constexpr std::string_view kEngineNames[] = {"auto", "gl", "cpu"};
 
 /// Settings of the shared ray caster.
 struct RenderParams {
-    Filter filter =
-        Filter::AverageQuasi; ///< reconstruction filter; on CC "quasi" is prefiltered trilinear, all others trilinear
-    float detail = 1;         ///< pixels: bricked data use a coarser level where voxels would be smaller
-    float importance = 1;     ///< number of levels by which unimportant bricks may be coarser
+    Filter filter = Filter::AverageQuasi; ///< reconstruction; on CC "quasi" is prefiltered trilinear, "average" and
+                                          ///< "tetrahedral" trilinear
+    float detail = 1;                     ///< pixels: bricked data use a coarser level where voxels would be smaller
+    float importance = 1;                 ///< number of levels by which unimportant bricks may be coarser
     RenderLimits limits;
     float stepVoxels = 0.5f; ///< sample distance in cells of the finest level wanted
     volume::GradientSpan gradient = volume::GradientSpan::Neighbours;
@@ -53,7 +60,13 @@ struct RenderParams {
     static void describe(auto& self, auto&& visit) {
         constexpr std::string_view kParts = "Large data", kGradients = "Gradients", kSteps = "Steps along rays";
         visit(self.filter,
-              FieldInfo{.key = "filter", .doc = "Reconstruction between lattice points", .names = kFilterNames});
+              FieldInfo{.key = "filter",
+                        .doc = "Reconstruction between lattice points: linear between prefiltered samples (quasi), "
+                               "linear between the samples (average), on BCC from four of them (tetrahedral), or by "
+                               "cubic B-splines, with the least error and in several times the time, for pictures at "
+                               "rest (cubic). Cubic is for samples as they are: draw a grid on its own lattice, since "
+                               "its body-centred samples are corrected for quasi",
+                        .names = kFilterNames});
         visit(self.stepVoxels,
               FieldInfo{.key = "step",
                         .doc = "Distance between samples along a ray, in voxels of the finest level drawn",
@@ -61,14 +74,15 @@ struct RenderParams {
                         .range = Range{0.05, 4},
                         .logScale = true});
         visit(self.detail, FieldInfo{.key = "detail",
-                                     .doc = "Voxels smaller than this are shown at a coarser level, in data too large "
-                                            "for one texture; 0 = full resolution",
+                                     .doc = "Voxels smaller than this are shown at a coarser level by OpenGL, in data "
+                                            "too large for one texture; 0 = full resolution, as the processor draws "
+                                            "all data",
                                      .unit = "pixel",
                                      .range = Range{0, 8}});
         visit(self.importance,
               FieldInfo{.key = "importance",
                         .doc = "Number of levels by which the least important bricks may be coarser than the most "
-                               "important one; 0 = the level depends on the size on screen only",
+                               "important one, as for the detail; 0 = the level depends on the size on screen only",
                         .unit = "level",
                         .range = Range{0, 4},
                         .group = kParts});

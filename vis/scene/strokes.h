@@ -9,15 +9,16 @@
 #include <string>
 #include <vector>
 
-/// Strokes along a vector in slices: made outside the renderer (vis/lic), drawn by Scene::strokes.
+/// Strokes along a vector in slices and on surfaces: made outside the renderer (vis/lic), drawn by Scene::strokes and
+/// Geometry::strokes.
 namespace tessera::vis {
 
 /// How noise is weighted along a stroke. Box: evenly; Hann: most in its middle, so that strokes fade out at both ends.
 enum class StrokeKernel { Box, Hann };
 inline constexpr std::string_view kStrokeKernelNames[] = {"box", "hann"};
 
-/// Fine strokes along the part of a vector that lies in a slice, by line integral convolution: they make the colours
-/// of the slice lighter and darker.
+/// Fine strokes along the part of a vector that lies in a slice or a surface, by line integral convolution: they make
+/// its colours lighter and darker.
 struct Strokes {
     std::string vector = {}; ///< "" = no strokes
     float length = 0.08f;    ///< in fractions of the longest edge as drawn
@@ -30,9 +31,10 @@ struct Strokes {
     bool operator==(const Strokes&) const = default;
     static void describe(auto& self, auto&& visit) {
         const bool any = !self.vector.empty();
-        visit(self.vector, FieldInfo{.key = "vector",
-                                     .doc = "Vector whose part in the slice strokes follow; empty: no strokes",
-                                     .refersTo = "optionalVector"});
+        visit(self.vector,
+              FieldInfo{.key = "vector",
+                        .doc = "Vector whose part in the slice or surface strokes follow; empty: no strokes",
+                        .refersTo = "optionalVector"});
         visit(self.length, FieldInfo{.key = "length",
                                      .doc = "Length of a stroke; longest edge as drawn = 1",
                                      .range = Range{0.002, 0.5},
@@ -52,14 +54,16 @@ struct Strokes {
                                               "colour itself",
                                        .range = Range{0, 1},
                                        .applies = any});
-        visit(self.bySpeed, FieldInfo{.key = "bySpeed",
-                                      .doc = "Fainter where the vector's part in the slice is small; its largest value "
-                                             "in the slice has full strength",
-                                      .applies = any});
-        visit(self.grey, FieldInfo{.key = "grey",
-                                   .doc = "On grey instead of the colours of the parameter; nothing where the vector "
-                                          "has no value",
-                                   .applies = any});
+        visit(self.bySpeed,
+              FieldInfo{.key = "bySpeed",
+                        .doc = "Fainter where the vector's part in the slice or surface is small; its largest "
+                               "value there has full strength",
+                        .applies = any});
+        visit(self.grey,
+              FieldInfo{.key = "grey",
+                        .doc = "On grey instead of the colours of the parameter; of a slice nothing where the "
+                               "vector has no value",
+                        .applies = any});
         visit(self.random, FieldInfo{.key = "random",
                                      .doc = "Seed of the noise that strokes are made of",
                                      .range = Range{0, 1000},
@@ -68,7 +72,7 @@ struct Strokes {
 };
 /// As a member of what draws slices.
 inline FieldInfo strokesField() {
-    return {.key = "strokes", .doc = "Strokes along a vector in the slice"};
+    return {.key = "strokes", .doc = "Strokes along a vector in the slice or surface"};
 }
 
 /// Strokes in a plane of the stretched world, as a picture of square texels. Immutable once in a scene: scenes compare

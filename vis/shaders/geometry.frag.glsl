@@ -11,7 +11,7 @@ uniform int cutByBox; // 1: an iso-surface, which ends where the box cuts it
 #endif
 
 in vec3 world, direction;
-in float value, side;
+in float value, side, stroke;
 flat in vec4 tint; // linear light and opacity; red below 0: coloured by the value
 
 uniform vec3 rayOrigin, forward; // of the ray through the centre of the picture
@@ -21,6 +21,7 @@ uniform float row;
 uniform vec2 map; // transfer function position = value * x + y
 uniform vec3 plain;
 uniform float opacity;
+uniform float strokes; // strength
 uniform int lens; // index of the lens that it is drawn in, -1: everywhere
 uniform float brushEffect;
 uniform sampler2DArray former, formerColors;
@@ -93,6 +94,7 @@ void main() {
     float entries = float(textureSize(colors, 0).x), place = clamp(value * map.x + map.y, 0.0, 1.0);
     vec3 color = isnan(value) ? plain : textureLod(colors, vec2((place * (entries - 1.0) + 0.5) / entries, row), 0.0).rgb;
     if (tint.r >= 0.0) color = tint.rgb;
+    color = withStrokes(color, stroke, strokes);
     color = mix(vec3(luminance(color)), color, action.y);
 #if LOOKS
     LookSample at = surfaceLook(unit, toViewer, along, dx, dy, turnX, turnY);

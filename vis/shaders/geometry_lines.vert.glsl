@@ -12,7 +12,7 @@ uniform vec3 rayOrigin, forward;
 uniform int perspective;
 
 out vec3 world, direction; // direction: along the line
-out float value, side;     // side: -1 .. 1 across the line
+out float value, side, stroke; // side: -1 .. 1 across the line; stroke: 0
 flat out vec4 tint;
 
 void main() {
@@ -25,6 +25,7 @@ void main() {
     world = second ? b : a;
     direction = b - a;
     value = second ? scalars.y : scalars.x;
+    stroke = 0.0;
     tint = vec4(-1.0, -1.0, -1.0, 1.0);
     gl_Position = second ? clipB : clipA;
     float width = lineWidth;

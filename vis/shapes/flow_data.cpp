@@ -3,6 +3,7 @@
 #include "vis/scene/geometry.h"
 #include "volume/field/time_pair.h"
 #include "volume/flow/flow_channels.h"
+#include "volume/flow/paths.h"
 #include "volume/mesh/isosurface.h"
 
 #include <algorithm>
@@ -144,7 +145,27 @@ volume::StreamlineSettings streamlinesOf(const volume::BrickSource& source, cons
     const glm::dvec3 size = source.info().bounds.size();
     return {.lattice = data.lattice,
             .longest = double(layer.length) * std::max({size.x, size.y, size.z}),
-            .slowest = data.slowest};
+            .slowest = data.slowest,
+            .stopped = data.stopped.get()};
+}
+
+std::vector<std::string> flowNotes(const volume::DatasetInfo& info, const FlowLayer& layer, const FlowData& data) {
+    const std::string what = "flow of " + layer.vector;
+    std::vector<std::string> notes;
+    if (data.level > 0) notes.push_back(coarserText(what, data.level));
+    if (const std::size_t stopped = *data.stopped; stopped > 0) {
+        const bool particles = followsParticles(layer.kind), one = stopped == 1;
+        const int steps = particles ? volume::PathSettings().mostSteps : volume::StreamlineSettings().mostSteps;
+        notes.push_back(what + ": " + std::to_string(stopped) +
+                        (particles ? one ? " particle stops" : " particles stop"
+                         : one     ? " end of a line lies"
+                                   : " ends of lines lie") +
+                        (particles ? " early, after " : " where they were cut off, after ") + std::to_string(steps) +
+                        " steps");
+    }
+    const bool tilted = info.plane && !info.plane->hasTimeAxis() && glm::dvec3(info.plane->normal) != glm::dvec3(0);
+    if (tilted) notes.push_back(what + ": vectors of several times, since t differs over the plane");
+    return notes;
 }
 
 FlowSeeds seedsOf(const volume::BrickSource& source, const FlowData& data, const FlowLayer& layer, double moment,

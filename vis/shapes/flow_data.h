@@ -5,6 +5,8 @@
 #include "volume/flow/even_lines.h"
 #include "volume/flow/flow.h"
 
+#include <atomic>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,6 +23,8 @@ struct FlowData {
     volume::Lattice lattice;         ///< in whose cells steps are measured
     volume::VectorField field;       ///< at the time shown
     std::shared_ptr<const volume::VectorSeries> series; ///< of kinds that follow particles
+    /// Counts ends of lines, or particles, that stop for the number of their steps.
+    std::shared_ptr<std::atomic<std::size_t>> stopped = std::make_shared<std::atomic<std::size_t>>(0);
     /// Velocity of particles.
     volume::ChangingField velocity() const;
 };
@@ -55,6 +59,10 @@ volume::StreamlineSettings streamlinesOf(const volume::BrickSource& source, cons
 std::vector<float> valuesOver(const volume::BrickSource& source, const std::string& channel, int level,
                               const std::vector<glm::vec3>& places, const std::vector<double>& moments,
                               const Progress& progress);
+
+/// What users have to know of a layer's geometry: that it is of coarser samples, that lines stop early, that the
+/// vectors of a plane in space and time are of several times.
+std::vector<std::string> flowNotes(const volume::DatasetInfo& info, const FlowLayer& layer, const FlowData& data);
 
 /// Level at which a layer is computed, so that its vector fits into memory at the times it needs.
 int levelOf(const volume::BrickSource& source, const FlowLayer& layer);

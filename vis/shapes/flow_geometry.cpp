@@ -25,9 +25,9 @@ double longestDrawn(const volume::BrickSource& source, glm::dvec3 stretch) {
     return std::max({drawn.x, drawn.y, drawn.z});
 }
 
-std::shared_ptr<const Geometry> linesAlong(const volume::BrickSource& source, const FlowLayer& layer,
-                                           const FlowData& data, const FlowSeeds& seeds, double moment,
-                                           glm::dvec3 stretch, const Width& width, const Progress& progress) {
+std::shared_ptr<Geometry> linesAlong(const volume::BrickSource& source, const FlowLayer& layer, const FlowData& data,
+                                     const FlowSeeds& seeds, double moment, glm::dvec3 stretch, const Width& width,
+                                     const Progress& progress) {
     LineGatherer gatherer(source);
     const auto lines =
         layer.seeds == volume::SeedShape::Even
@@ -99,9 +99,9 @@ void addBlur(Geometry& geometry, const GlyphWork& work, const std::vector<glm::d
     }
 }
 
-std::shared_ptr<const Geometry> glyphsAt(const volume::BrickSource& source, const FlowLayer& layer,
-                                         const FlowData& data, const std::vector<glm::dvec3>& seeds, double moment,
-                                         glm::dvec3 stretch, const Width& width, const Progress& progress) {
+std::shared_ptr<Geometry> glyphsAt(const volume::BrickSource& source, const FlowLayer& layer, const FlowData& data,
+                                   const std::vector<glm::dvec3>& seeds, double moment, glm::dvec3 stretch,
+                                   const Width& width, const Progress& progress) {
     const glm::dvec3 origin = volume::originFor(source.info().bounds);
     auto out = std::make_shared<Geometry>();
     std::vector<glm::vec3> places;
@@ -146,9 +146,11 @@ std::shared_ptr<const Geometry> makeFlow(const volume::BrickSource& source, cons
     if (!data) return nullptr;
     const FlowSeeds seeds = seedsOf(source, *data, layer, moment, stretch, progress.part(0.3, 0.4), interest);
     const Width width = widthsOf(source, *data, layer, moment, interest, progress.part(0.4, 0.5));
-    return followsFlow(layer.kind)
-               ? linesAlong(source, layer, *data, seeds, moment, stretch, width, progress.part(0.5, 1))
-               : glyphsAt(source, layer, *data, seeds.places, moment, stretch, width, progress.part(0.5, 1));
+    auto out = followsFlow(layer.kind)
+                   ? linesAlong(source, layer, *data, seeds, moment, stretch, width, progress.part(0.5, 1))
+                   : glyphsAt(source, layer, *data, seeds.places, moment, stretch, width, progress.part(0.5, 1));
+    out->notes = flowNotes(source.info(), layer, *data);
+    return out;
 }
 
 } // namespace tessera::vis

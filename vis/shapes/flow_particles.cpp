@@ -54,8 +54,8 @@ struct ParticleWork {
 };
 
 /// Paths through all times of particles that are at the seeds now.
-std::shared_ptr<const Geometry> pathsOf(const ParticleWork& work, std::span<const glm::dvec3> seeds,
-                                        const Progress& progress) {
+std::shared_ptr<Geometry> pathsOf(const ParticleWork& work, std::span<const glm::dvec3> seeds,
+                                  const Progress& progress) {
     const glm::dvec3 size = work.info().bounds.size();
     volume::PathSettings settings = work.path;
     settings.longest = double(work.layer.length) * std::max({size.x, size.y, size.z});
@@ -71,8 +71,8 @@ std::shared_ptr<const Geometry> pathsOf(const ParticleWork& work, std::span<cons
     return out;
 }
 
-std::shared_ptr<const Geometry> streaksOf(const ParticleWork& work, std::span<const glm::dvec3> seeds,
-                                          const Progress& progress) {
+std::shared_ptr<Geometry> streaksOf(const ParticleWork& work, std::span<const glm::dvec3> seeds,
+                                    const Progress& progress) {
     const double span = work.layer.span > 0 || work.steady() ? work.span(seeds) : kEver;
     const double begin = std::max(work.moment - span, work.first());
     const volume::StreakSettings settings{.path = work.path};
@@ -145,7 +145,7 @@ std::vector<Release> releasesOf(const ParticleWork& work, double interval) {
     return out;
 }
 
-std::shared_ptr<const Geometry> timelinesOf(const ParticleWork& work, const Progress& progress) {
+std::shared_ptr<Geometry> timelinesOf(const ParticleWork& work, const Progress& progress) {
     const std::vector<SeedLine> rakes = seedLinesOf(work);
     std::vector<glm::dvec3> begins;
     for (const SeedLine& rake : rakes)
@@ -209,8 +209,8 @@ void addTail(LineGatherer& gatherer, const volume::Pathline& path, double begin)
 }
 
 /// Particles that are born at the seeds, live for a while and are born again, each seed at other times.
-std::shared_ptr<const Geometry> movingParticles(const ParticleWork& work, std::span<const glm::dvec3> seeds,
-                                                const Progress& progress) {
+std::shared_ptr<Geometry> movingParticles(const ParticleWork& work, std::span<const glm::dvec3> seeds,
+                                          const Progress& progress) {
     constexpr double kGolden = 0.61803398874989485; // shares of lives that spread evenly, however many they are
     const double life = work.span(seeds) * (work.layer.span > 0 ? 1 : kLifeShare);
     auto out = std::make_shared<Geometry>();
@@ -246,11 +246,19 @@ std::shared_ptr<const Geometry> makeParticles(const volume::BrickSource& source,
     work.path.lattice = data->lattice;
     if (times.size() > 1) work.path.times = times;
     const Progress rest = progress.part(0.3, 1);
-    if (layer.kind == FlowKind::Timelines) return timelinesOf(work, rest);
-    const std::vector<glm::dvec3> seeds =
-        seedsOf(source, *data, layer, moment, stretch, progress.part(0.2, 0.3), interest).places;
-    if (layer.kind == FlowKind::Streaklines) return streaksOf(work, seeds, rest);
-    return layer.kind == FlowKind::Speedlines ? movingParticles(work, seeds, rest) : pathsOf(work, seeds, rest);
+    work.path.stopped = data->stopped.get();
+    std::shared_ptr<Geometry> out;
+    if (layer.kind == FlowKind::Timelines) {
+        out = timelinesOf(work, rest);
+    } else {
+        const std::vector<glm::dvec3> seeds =
+            seedsOf(source, *data, layer, moment, stretch, progress.part(0.2, 0.3), interest).places;
+        out = layer.kind == FlowKind::Streaklines  ? streaksOf(work, seeds, rest)
+              : layer.kind == FlowKind::Speedlines ? movingParticles(work, seeds, rest)
+                                                   : pathsOf(work, seeds, rest);
+    }
+    out->notes = flowNotes(source.info(), layer, *data);
+    return out;
 }
 
 } // namespace tessera::vis

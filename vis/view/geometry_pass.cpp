@@ -18,7 +18,7 @@ constexpr int kColors = 1024; ///< entries per row of the colour table
 /// Texture units that no ray plan uses.
 constexpr int kTableUnit = 42, kFormerUnit = 43, kGrainUnit = 45, kFormerColorUnit = 46;
 
-constexpr GLuint kTintAttribute = 3;
+constexpr GLuint kTintAttribute = 3, kStrokeAttribute = 4;
 
 template <class T> Buffer filledBuffer(const std::vector<T>& content, const char* label) {
     return makeBuffer(GLsizeiptr(content.size() * sizeof(T)), content.data(), 0, label);
@@ -106,6 +106,11 @@ const GeometryPass::Uploaded& GeometryPass::upload(const std::shared_ptr<const G
             up.tints = filledBuffer(geometry->tints, "mesh tints");
             glVertexArrayVertexBuffer(up.mesh.name(), 1, up.tints.name(), 0, sizeof(glm::vec4));
             attribute(up.mesh.name(), kTintAttribute, 4, 0, 1);
+        }
+        if (!geometry->strokes.empty()) {
+            up.strokes = filledBuffer(geometry->strokes, "mesh strokes");
+            glVertexArrayVertexBuffer(up.mesh.name(), 2, up.strokes.name(), 0, sizeof(float));
+            attribute(up.mesh.name(), kStrokeAttribute, 1, 0, 2);
         }
     }
     if (const std::vector<float> segments = segmentsOf(geometry->lines); !segments.empty()) {
@@ -271,7 +276,9 @@ void GeometryPass::drawOne(const Draw& each, const GeometryJob& job, int peel) c
     setLookUniforms(own, {layer.style.look.any() ? &layer.style.look : nullptr}, job.scene, frame, job.info.lattice,
                     job.pictureSize, kGrainUnit);
     glUseProgram(own.name());
+    own.set("strokes", layer.style.strokes);
     glVertexAttrib4f(kTintAttribute, -1, -1, -1, 1); // of a mesh without tints
+    glVertexAttrib1f(kStrokeAttribute, 0);           // of a mesh without strokes
     glBindVertexArray(each.lines ? each.up->lines.name() : each.up->mesh.name());
     if (each.lines)
         glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, each.up->segmentCount);

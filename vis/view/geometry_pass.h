@@ -53,7 +53,7 @@ public:
 private:
     struct Uploaded {
         std::weak_ptr<const Geometry> of;
-        Buffer vertices, tints, indices, segments;
+        Buffer vertices, tints, strokes, indices, segments;
         VertexArray mesh, lines;
         GLsizei indexCount = 0, segmentCount = 0;
     };

@@ -57,6 +57,8 @@ public:
     /// Number of tiles drawn in all passes over the stale area.
     int tilesDone() const { return tilesDone_; }
     void drewTile() { ++tilesDone_; }
+    /// Passes follow that were counted already.
+    void repeatAfter(int tiles) { tilesDone_ = tiles; }
     /// The first pass over the stale area is drawn and presented.
     void drewPass();
 

@@ -31,7 +31,7 @@ void addCost(FrameStatus& status, const volume::BrickGrid& grid, const ChannelTe
 PlanFrames framesAt(const Residency& residency, const RenderCall& call, double time, bool mixed) {
     const RayPlan& plan = call.plan;
     const volume::DatasetInfo& info = call.info();
-    const bool prefiltered = call.scene.render.filter == Filter::AverageQuasi;
+    const volume::Prefilter prefilter = prefilterOf(call.scene.render.filter);
     const std::size_t count = plan.later > 0 ? std::size_t(plan.later) : plan.fields.size();
     const bool fits = 2 * count <= std::size_t(plan.mostFields);
     PlanFrames frames;
@@ -47,7 +47,8 @@ PlanFrames framesAt(const Residency& residency, const RenderCall& call, double t
     }
     const auto add = [&](std::size_t i, int index) {
         const BoundField& field = plan.fields[i];
-        frames.keys.push_back({field.channel, index, prefiltered && !field.nearest && !field.raw, field.part});
+        const bool asStored = field.nearest || field.raw;
+        frames.keys.push_back({field.channel, index, asStored ? volume::Prefilter::None : prefilter, field.part});
     };
     for (std::size_t i = 0; i < count; ++i) add(i, computed[i].value_or(pairs[i].earlier));
     for (std::size_t i = 0; between && i < count; ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "vis/demand/added_rays.h"
 #include "vis/demand/picture_contrast.h"
 #include "vis/packet/packet_renderer.h"
 #include "vis/processor/processor_picture.h"
@@ -50,14 +51,14 @@ private:
 struct PacketView {
     packet::PacketRenderer full, coarse; ///< of all samples, and of those of a coarse level until these are read
     bool isCoarse = false;               ///< the latter draws
-    std::optional<Clock::time_point> lackingSince; ///< all samples of the scene
-    packet::PacketPicture picture;                 ///< of the tile drawn last
-    packet::PacketGeometry geometry;               ///< that its rays met
-    PictureContrast contrast;                      ///< of the picture at half resolution
-    Pace pace{false};                              ///< of rays cast by the processor, measured by the clock
-    int time = -1, step = 0;    ///< index of the stored time drawn last, and the way from the one before
-    std::uint64_t revision = 0; ///< increases with each data set, and from coarse samples to all and back
-    bool failed = false;        ///< its samples could not be read: OpenGL draws these data, without what is damaged
+    packet::PacketPicture picture;       ///< of the tile drawn last
+    packet::PacketGeometry geometry;     ///< that its rays met
+    PictureContrast contrast;            ///< of the picture at half resolution
+    AddedRays added;                     ///< until the picture is refined
+    Pace pace{false};                    ///< of rays cast by the processor, measured by the clock
+    int time = -1, step = 0;             ///< index of the stored time drawn last, and the way from the one before
+    std::uint64_t revision = 0;          ///< increases with each data set, and from coarse samples to all and back
+    bool failed = false; ///< its samples could not be read: OpenGL draws these data, without what is damaged
 
     packet::PacketRenderer& renderer() { return isCoarse ? coarse : full; }
     void release() { full.release(), coarse.release(); }

@@ -1,6 +1,7 @@
 #include "volume/analysis/lattice_error.h"
 
 #include "volume/base/parallel.h"
+#include "volume/reconstruct/cubic.h"
 #include "volume/reconstruct/reconstruct.h"
 #include "volume/resample/resample.h"
 #include "volume/resample/series.h"
@@ -19,7 +20,11 @@ namespace tessera::volume {
 
 namespace {
 
-constexpr int kMargin = 4; // cells beyond the box: two for the filter, one for the prefilter, one for rounding
+/// Cells beyond the box: for the filter two, one more for rounding, and for the prefilter.
+int marginOf(LatticeKind kind, LatticeFilter filter) {
+    const Prefilter prefilter = filter == LatticeFilter::Cubic ? Prefilter::Cubic : Prefilter::Linear;
+    return 3 + prefilterReach(prefilter, LevelGeometry{kind, 1, 0});
+}
 
 /// Samples on a part of an endless lattice: the box and a margin around it.
 struct SampledPart {
@@ -43,7 +48,7 @@ Lattice latticeAround(const Box& box, LatticeKind kind, double spacing, LatticeF
     Lattice lattice;
     lattice.kind = isOfGrid(filter) ? LatticeKind::CC : kind;
     lattice.spacing = glm::dvec3(isOfGrid(filter) ? spacing / kBccSpacing : spacing);
-    const int margin = isOfGrid(filter) ? kMarginOfGrid : kMargin;
+    const int margin = isOfGrid(filter) ? kMarginOfGrid : marginOf(kind, filter);
     lattice.origin = box.lo - double(margin) * lattice.spacing;
     lattice.size = glm::ivec3(glm::ceil(box.size() / lattice.spacing)) + 2 * margin + 1;
     lattice.size.z *= lattice.kind == LatticeKind::BCC ? 2 : 1;
@@ -75,6 +80,19 @@ void prefilter(SampledPart& part) {
     part.values = everySample(part.lattice, [&](glm::ivec3 at) { return filtered(at).value; });
 }
 
+/// The part inside what its coefficients depend on.
+SampledPart coefficients(const SampledPart& part) {
+    const LevelGeometry geometry{part.lattice.kind, 1, 0};
+    BrickSamples samples;
+    samples.size = part.lattice.size;
+    samples.values.assign(part.values.begin(), part.values.end());
+    const BrickSamples found = cubicCoefficients(samples, geometry);
+    SampledPart out{part.lattice, {found.values.begin(), found.values.end()}};
+    out.lattice.size = found.size;
+    out.lattice.origin += double(prefilterReach(Prefilter::Cubic, geometry)) * part.lattice.spacing;
+    return out;
+}
+
 /// The samples of a signal, prefiltered if the filter requires it.
 SampledPart samplesOf(const std::function<double(glm::dvec3)>& signal, LatticeKind kind, double spacing,
                       LatticeFilter filter, const Box& box) {
@@ -86,6 +104,7 @@ SampledPart samplesOf(const std::function<double(glm::dvec3)>& signal, LatticeKi
         const Field made = onPictures(grid, filter);
         part = {made.lattice, physicalValues(made)};
     }
+    if (filter == LatticeFilter::Cubic) return coefficients(part);
     if (isPrefiltered(filter)) prefilter(part);
     return part;
 }
@@ -95,6 +114,7 @@ double reconstructed(const SampledPart& part, LatticeFilter filter, glm::dvec3 c
     const Blend blend = filter == LatticeFilter::Tetrahedral ? tetrahedral(geometry, part, cells)
                         : filter == LatticeFilter::Cosine    ? cosineWeighted(geometry, part, cells)
                         : filter == LatticeFilter::Quintic   ? quinticBox(geometry, part, cells)
+                        : filter == LatticeFilter::Cubic     ? cubic(geometry, part, cells)
                                                              : linear(geometry, part, cells);
     return blend.sum / blend.coverage;
 }

@@ -10,12 +10,13 @@
 namespace tessera::volume {
 
 /// Filters of volume/reconstruct/reconstruct.h: `linear` on unfiltered samples, and on prefiltered ones (quasi); for
-/// BCC also `tetrahedral`, `cosineWeighted`, and `quinticBox` on prefiltered samples. Resampled, Corrected: quasi, of
-/// samples that come from those of the CC grid with a cell shorter by sqrt 2, as toBcc() resamples them
-/// (volume/resample/resample.h), and as pictures are made of them (toCentred(), volume/sources/centred_field.h).
-enum class LatticeFilter { Linear, Quasi, Tetrahedral, Cosine, Quintic, Resampled, Corrected };
-inline constexpr std::string_view kLatticeFilterNames[] = {"linear",  "quasi",     "tetrahedral", "cosine",
-                                                           "quintic", "resampled", "corrected"};
+/// BCC also `tetrahedral`, `cosineWeighted`, and `quinticBox` on prefiltered samples; `cubic` on coefficients.
+/// Resampled, Corrected: quasi, of samples that come from those of the CC grid with a cell shorter by sqrt 2, as
+/// toBcc() resamples them (volume/resample/resample.h), and as pictures are made of them (toCentred(),
+/// volume/sources/centred_field.h).
+enum class LatticeFilter { Linear, Quasi, Tetrahedral, Cosine, Quintic, Cubic, Resampled, Corrected };
+inline constexpr std::string_view kLatticeFilterNames[] = {"linear",  "quasi", "tetrahedral", "cosine",
+                                                           "quintic", "cubic", "resampled",   "corrected"};
 
 struct LatticeError {
     double rms = 0, max = 0;

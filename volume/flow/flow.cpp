@@ -21,7 +21,11 @@ std::vector<glm::dvec3> halfLine(const ChangingField& field, glm::dvec3 place, g
     const StepCells cells{s.cell, s.lattice ? &*s.lattice : nullptr, s.longestStep};
     std::vector<glm::dvec3> out;
     double length = 0, wanted = 0.25; // step in cells
-    while (int(out.size()) < s.mostSteps && length < s.longest && glm::length(slope) > s.slowest) {
+    while (length < s.longest && glm::length(slope) > s.slowest) {
+        if (int(out.size()) == s.mostSteps) {
+            if (s.stopped) ++*s.stopped;
+            break;
+        }
         const glm::dvec3 cell = cells.at(place, sign * slope);
         const double speed = glm::length(slope / cell);
         if (!(speed > 0)) break;

@@ -57,6 +57,8 @@ struct StreamlineSettings {
     double longest = 1e300;   ///< of a line, each way, physical
     double slowest = 0;       ///< a line ends where the field is no faster
     int mostSteps = 5000;     ///< each way
+    /// Counts lines that end after that many steps, by their ends, on any thread; null: nobody asks.
+    std::atomic<std::size_t>* stopped = nullptr;
 };
 
 /// The streamline through a point, from its upstream to its downstream end; the point is one of its vertices. Ends

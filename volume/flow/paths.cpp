@@ -37,7 +37,11 @@ Particle travel(const ChangingField& field, Particle at, double last, const Path
     if (!first) return at;
     glm::dvec3 slope = *first;
     double length = 0, wanted = -1;
-    for (int steps = 0; steps < s.mostSteps && at.time != last && length < s.longest * (1 - 1e-9);) {
+    for (int steps = 0; at.time != last && length < s.longest * (1 - 1e-9);) {
+        if (steps == s.mostSteps) {
+            if (s.stopped) ++*s.stopped;
+            break;
+        }
         const glm::dvec3 cell = cells.at(at.place, sign * slope);
         const double speed = glm::length(slope / cell), stop = nextStop(s.times, at.time, last);
         double h = std::min(std::abs(stop - at.time), whole * kMostOfTime);

@@ -4,6 +4,8 @@
 #include "volume/field/lattice.h"
 #include "volume/flow/runge_kutta.h"
 
+#include <atomic>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -19,6 +21,8 @@ struct PathSettings {
     double longestStep = 0.5;            ///< cells
     double longest = 1e300;              ///< of a path, each way, physical
     int mostSteps = 50000;               ///< each way
+    /// Counts particles that stop after that many steps, on any thread; null: nobody asks.
+    std::atomic<std::size_t>* stopped = nullptr;
 };
 
 /// The path of a particle: vertices in order of time.

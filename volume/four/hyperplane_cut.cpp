@@ -111,18 +111,9 @@ SurfaceMesh cutAtTime(const TetraMesh& mesh, double time) {
     for (const glm::dvec4& point : cut.points)
         box = {glm::min(box.lo, glm::dvec3(point)), glm::max(box.hi, glm::dvec3(point))};
     out.origin = originFor(box);
-    std::vector<glm::dvec3> normals(cut.points.size(), glm::dvec3(0));
-    for (const glm::uvec3& triangle : cut.triangles) {
-        const auto at = [&](int i) { return glm::dvec3(cut.points[triangle[i]]); };
-        const glm::dvec3 area = glm::cross(at(1) - at(0), at(2) - at(0));
-        for (int i = 0; i < 3; ++i) normals[triangle[i]] += area;
-    }
-    for (std::size_t i = 0; i < cut.points.size(); ++i) {
-        out.positions.emplace_back(glm::dvec3(cut.points[i]) - out.origin);
-        const double length = glm::length(normals[i]);
-        out.normals.emplace_back(length > 0 ? normals[i] / length : glm::dvec3(0));
-    }
+    for (const glm::dvec4& point : cut.points) out.positions.emplace_back(glm::dvec3(point) - out.origin);
     out.triangles = cut.triangles;
+    out.normals = faceNormals(out);
     return out;
 }
 

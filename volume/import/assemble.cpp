@@ -9,11 +9,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <unordered_map>
 
 namespace tessera::volume {
 
@@ -95,8 +97,8 @@ struct Assembly {
         const FileGroup& group = groups[from.group];
         std::size_t index = 0;
         if (!group.times.empty()) {
-            const auto found = std::find(group.times.begin(), group.times.end(), time);
-            if (found == group.times.end()) {
+            const auto found = std::ranges::lower_bound(group.times, time);
+            if (found == group.times.end() || *found != time) {
                 if (group.times.size() > 1) return {};
             } else {
                 index = static_cast<std::size_t>(found - group.times.begin());
@@ -165,12 +167,33 @@ struct Assembly {
     }
 };
 
-/// Whether a block is a mesh, or one of several adjacent grids of a file, whose arrays of equal name are one parameter.
-bool isBlock(const FileGroup& group, const GroupBlock& block) {
-    return block.form.mesh ||
-           (group.blocks.size() > 1 && std::ranges::none_of(group.blocks, [&](const GroupBlock& other) {
-                return &other != &block && other.form.lattice == block.form.lattice;
-            }));
+/// Equal for equal lattices, but for their axes.
+std::size_t hashOf(const Lattice& lattice) {
+    std::size_t hash = 0;
+    const auto add = [&hash](double number) { hash = hash * 1099511628211u + std::hash<double>()(number); };
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double number : {double(lattice.size[axis]), lattice.spacing[axis], lattice.origin[axis]})
+            add(number);
+    return hash;
+}
+
+/// Of each block of each group: whether it is a mesh, or one of several adjacent grids of a file, whose arrays of equal
+/// name are one parameter.
+std::vector<std::vector<bool>> joiningBlocks(const std::vector<FileGroup>& groups) {
+    std::vector<std::vector<bool>> joins;
+    for (const FileGroup& group : groups) {
+        std::unordered_map<std::size_t, std::vector<const GroupBlock*>> alike;
+        for (const GroupBlock& block : group.blocks) alike[hashOf(block.form.lattice)].push_back(&block);
+        const auto isAlone = [&](const GroupBlock& block) {
+            return std::ranges::none_of(alike.at(hashOf(block.form.lattice)), [&](const GroupBlock* other) {
+                return other != &block && other->form.lattice == block.form.lattice;
+            });
+        };
+        std::vector<bool>& own = joins.emplace_back();
+        for (const GroupBlock& block : group.blocks)
+            own.push_back(block.form.mesh || (group.blocks.size() > 1 && isAlone(block)));
+    }
+    return joins;
 }
 
 std::string dataName(const std::vector<OpenedFile>& files) {
@@ -204,19 +227,20 @@ struct Gathered {
 /// Gathers the arrays of all blocks as parameters, and what feeds each.
 class Parameters {
 public:
-    Parameters(Assembly& all, DatasetInfo& info) : all_(all), info_(info) {
+    Parameters(Assembly& all, const std::vector<std::vector<bool>>& joins, DatasetInfo& info)
+        : all_(all), joins_(joins), info_(info) {
         // Files on one grid all stay visible: arrays of equal name get the file's name added.
-        for (const FileGroup& group : all.groups)
-            for (const GroupBlock& block : group.blocks)
-                if (!isBlock(group, block))
-                    for (const Array& array : block.form.arrays) ++onGrids_[array.name];
+        for (std::size_t g = 0; g < all.groups.size(); ++g)
+            for (std::size_t b = 0; b < joins[g].size(); ++b)
+                if (!joins[g][b])
+                    for (const Array& array : all.groups[g].blocks[b].form.arrays) ++onGrids_[array.name];
     }
 
     void add(std::size_t group, std::size_t number, std::size_t array) {
         const FileGroup& files = all_.groups[group];
         const FileBlock& block = files.blocks[number].form;
         const Array& about = block.arrays[array];
-        const bool joins = isBlock(files, files.blocks[number]);
+        const bool joins = joins_[group][number];
         const ScalarType type = typeInAll(files, number, array);
         std::string name = about.name;
         if (!joins && onGrids_[name] > 1) {
@@ -243,30 +267,35 @@ public:
 
 private:
     Assembly& all_;
+    const std::vector<std::vector<bool>>& joins_; ///< joiningBlocks()
     DatasetInfo& info_;
     std::map<std::string, std::size_t> byName_;
     std::map<std::string, int> onGrids_;
 };
 
-void addNotes(const FileBlock& block, Gathered& found, std::vector<std::string>& notes) {
+/// Adds those notes of a block that are new.
+void addNotes(const FileBlock& block, std::set<std::string>& known, Gathered& found, std::vector<std::string>& notes) {
     for (const std::string& note : block.notes) {
         found.scattered = found.scattered || note.starts_with("scattered points");
-        if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+        if (known.insert(note).second) notes.push_back(note);
     }
 }
 
 /// Merges the metadata of all blocks, and gathers their arrays as parameters.
 Gathered gather(Assembly& all, bool numbers, DatasetInfo& info, std::vector<std::string>& notes) {
     Gathered found;
-    Parameters parameters(all, info);
+    const std::vector<std::vector<bool>> joins = joiningBlocks(all.groups);
+    Parameters parameters(all, joins, info);
+    std::set<std::string> known(notes.begin(), notes.end());
     for (std::size_t g = 0; g < all.groups.size(); ++g) {
         const FileGroup& group = all.groups[g];
         notes.insert(notes.end(), group.notes.begin(), group.notes.end());
+        known.insert(group.notes.begin(), group.notes.end());
         for (const OpenedFile* file : group.files)
-            for (const FileBlock& block : file->blocks) addNotes(block, found, notes);
+            for (const FileBlock& block : file->blocks) addNotes(block, known, found, notes);
         for (std::size_t b = 0; b < group.blocks.size(); ++b) {
             const FileBlock& block = group.blocks[b].form;
-            found.blocks += isBlock(group, group.blocks[b]) ? 1 : 0;
+            found.blocks += joins[g][b] ? 1 : 0;
             if (!block.lengthUnit.empty()) info.lengthUnit = block.lengthUnit;
             if (!numbers && !block.timeName.empty()) info.timeName = block.timeName;
             if (!numbers && !block.timeUnit.empty()) info.timeUnit = block.timeUnit;

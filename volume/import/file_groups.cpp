@@ -7,66 +7,80 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace tessera::volume {
 
 namespace {
 
-/// Whether files of one name pattern hold an array of the same name: else they are parameters, not times.
-bool sharesArray(const OpenedFile& a, const OpenedFile& b) {
-    for (const FileBlock& block : a.blocks)
-        for (const Array& array : block.arrays)
-            for (const FileBlock& other : b.blocks)
-                if (std::ranges::find(other.arrays, array.name, &Array::name) != other.arrays.end()) return true;
-    return false;
-}
+/// A group while files are added to it. What is known by name is looked up, since there may be thousands of files, of
+/// blocks and of arrays.
+struct GrowingGroup {
+    FileGroup group;
+    std::set<std::string> arrays; ///< names of those of all files
+    /// Places in group.blocks by name and, among blocks of one name, by order.
+    std::map<std::string, std::vector<std::size_t>> blocks;
+    std::vector<std::map<std::string, std::size_t>> arraysOf; ///< of each block: places by name
 
-/// The block of the group that is block `index` of a file: by its name, and among blocks of one name by their order;
-/// the only block of a file is that of the others whatever its name.
-GroupBlock* sameBlock(FileGroup& group, const OpenedFile& file, std::size_t index) {
-    const bool single = file.blocks.size() == 1 && group.blocks.size() == 1;
-    if (single) return &group.blocks.front();
-    const std::string& name = file.blocks[index].name;
-    auto before = std::count_if(file.blocks.begin(), file.blocks.begin() + std::ptrdiff_t(index),
-                                [&](const FileBlock& block) { return block.name == name; });
-    for (GroupBlock& block : group.blocks)
-        if (block.form.name == name && before-- == 0) return &block;
-    return nullptr;
+    /// Whether a file of one name pattern with the others holds an array of theirs: else it is a parameter, not a time.
+    bool sharesArray(const OpenedFile& file) const {
+        return std::ranges::any_of(file.blocks, [this](const FileBlock& block) {
+            return std::ranges::any_of(block.arrays,
+                                       [this](const Array& array) { return arrays.contains(array.name); });
+        });
+    }
+};
+
+/// The place of a block of a file in its group: by its name, and among blocks of one name by their order, `before` of
+/// the file's own came first; the only block of a file is that of the others whatever its name.
+std::optional<std::size_t> sameBlock(const GrowingGroup& growing, const OpenedFile& file, const std::string& name,
+                                     std::size_t before) {
+    if (file.blocks.size() == 1 && growing.group.blocks.size() == 1) return 0;
+    const auto known = growing.blocks.find(name);
+    if (known == growing.blocks.end() || before >= known->second.size()) return std::nullopt;
+    return known->second[before];
 }
 
 /// Adds the blocks and arrays of the last file of a group.
-void addBlocks(FileGroup& group) {
+void addBlocks(GrowingGroup& growing) {
+    FileGroup& group = growing.group;
     const OpenedFile& file = *group.files.back();
     const std::size_t f = group.files.size() - 1;
+    std::map<std::string, std::size_t> before; // blocks of a name
     for (GroupBlock& block : group.blocks) {
         block.at.push_back(-1);
         for (std::vector<int>& at : block.arrays) at.push_back(-1);
     }
     for (std::size_t b = 0; b < file.blocks.size(); ++b) {
         const FileBlock& own = file.blocks[b];
-        GroupBlock* block = sameBlock(group, file, b);
-        if (block == nullptr) {
+        std::optional<std::size_t> place = sameBlock(growing, file, own.name, before[own.name]++);
+        if (!place) {
+            place = group.blocks.size();
             group.blocks.push_back({own, std::vector<int>(f + 1, -1), {}});
-            block = &group.blocks.back();
-            block->form.arrays.clear();
+            group.blocks.back().form.arrays.clear();
+            growing.blocks[own.name].push_back(*place);
+            growing.arraysOf.emplace_back();
         }
-        block->at[f] = int(b);
+        GroupBlock& block = group.blocks[*place];
+        block.at[f] = int(b);
         for (std::size_t a = 0; a < own.arrays.size(); ++a) {
-            std::vector<Array>& arrays = block->form.arrays;
-            auto known = std::ranges::find(arrays, own.arrays[a].name, &Array::name);
-            if (known == arrays.end()) {
-                known = arrays.insert(known, own.arrays[a]);
-                block->arrays.emplace_back(f + 1, -1);
+            const Array& array = own.arrays[a];
+            const auto [at, isNew] = growing.arraysOf[*place].emplace(array.name, block.form.arrays.size());
+            if (isNew) {
+                block.form.arrays.push_back(array);
+                block.arrays.emplace_back(f + 1, -1);
+                growing.arrays.insert(array.name);
             }
-            if (known->components != own.arrays[a].components) {
-                group.notes.push_back(own.arrays[a].name + " has " + std::to_string(own.arrays[a].components) +
-                                      " components in " + file.entry.path + ", " + std::to_string(known->components) +
+            Array& known = block.form.arrays[at->second];
+            if (known.components != array.components) {
+                group.notes.push_back(array.name + " has " + std::to_string(array.components) + " components in " +
+                                      file.entry.path + ", " + std::to_string(known.components) +
                                       " before: it is absent there");
                 continue;
             }
-            if (known->unit.empty()) known->unit = own.arrays[a].unit;
-            block->arrays[std::size_t(known - arrays.begin())][f] = int(a);
+            if (known.unit.empty()) known.unit = array.unit;
+            block.arrays[at->second][f] = int(a);
         }
     }
 }
@@ -132,19 +146,25 @@ void setTimes(FileGroup& group) {
 } // namespace
 
 std::vector<FileGroup> groupsInTime(const std::vector<OpenedFile>& files) {
-    std::vector<FileGroup> groups;
+    std::vector<GrowingGroup> growing;
+    std::map<std::string, std::vector<std::size_t>> named; // by the group of the entries
     for (const OpenedFile& file : files) {
-        const auto follows = std::ranges::find_if(groups, [&](const FileGroup& group) {
-            return group.files.front()->entry.group == file.entry.group &&
-                   (file.entry.time || std::ranges::any_of(group.files, [&](const OpenedFile* other) {
-                        return sharesArray(*other, file);
-                    }));
-        });
-        FileGroup& group = follows != groups.end() ? *follows : groups.emplace_back();
-        group.files.push_back(&file);
-        addBlocks(group);
+        std::vector<std::size_t>& alike = named[file.entry.group];
+        const auto follows =
+            std::ranges::find_if(alike, [&](std::size_t g) { return file.entry.time || growing[g].sharesArray(file); });
+        const std::size_t at = follows != alike.end() ? *follows : growing.size();
+        if (at == growing.size()) {
+            alike.push_back(at);
+            growing.emplace_back();
+        }
+        growing[at].group.files.push_back(&file);
+        addBlocks(growing[at]);
     }
-    for (FileGroup& group : groups) setTimes(group);
+    std::vector<FileGroup> groups;
+    for (GrowingGroup& each : growing) {
+        setTimes(each.group);
+        groups.push_back(std::move(each.group));
+    }
     return groups;
 }
 
@@ -158,20 +178,24 @@ ScalarType typeInAll(const FileGroup& group, std::size_t block, std::size_t arra
 }
 
 void addQuantities(DatasetInfo& info, const FileGroup& group) {
-    const auto note = [&info](const std::string& name, const std::string& unit, std::size_t time, double value) {
-        auto known = std::ranges::find(info.quantities, name, &Quantity::name);
-        if (known == info.quantities.end())
-            known = info.quantities.insert(
-                known, {name, unit, std::vector<double>(info.times.size(), std::numeric_limits<double>::quiet_NaN())});
-        if (known->unit.empty()) known->unit = unit;
-        if (std::isnan(known->values[time])) known->values[time] = value;
+    std::map<std::string, std::size_t> places; // of the quantities by name
+    for (std::size_t q = 0; q < info.quantities.size(); ++q) places.emplace(info.quantities[q].name, q);
+    const auto note = [&](const std::string& name, const std::string& unit, std::size_t time, double value) {
+        const auto [at, isNew] = places.emplace(name, info.quantities.size());
+        if (isNew)
+            info.quantities.push_back(
+                {name, unit, std::vector<double>(info.times.size(), std::numeric_limits<double>::quiet_NaN())});
+        Quantity& known = info.quantities[at->second];
+        if (known.unit.empty()) known.unit = unit;
+        if (std::isnan(known.values[time])) known.values[time] = value;
     };
     for (std::size_t f = 0; f < group.frames.size(); ++f) {
         const OpenedFile& file = *group.files[group.frames[f].file];
         const auto local = std::size_t(group.frames[f].localTime);
-        for (std::size_t t = 0; t < info.times.size(); ++t) {
-            // A single frame beside a series is used at all times.
-            if (group.times.size() > 1 && group.times[f] != info.times[t]) continue;
+        // A single frame beside a series is used at all times.
+        const auto [first, last] = group.times.size() > 1 ? std::ranges::equal_range(info.times, group.times[f])
+                                                          : std::ranges::subrange(info.times.begin(), info.times.end());
+        for (auto t = std::size_t(first - info.times.begin()); t < std::size_t(last - info.times.begin()); ++t) {
             for (const auto& [name, value] : file.entry.numbers) note(name, "", t, value);
             for (const FileBlock& block : file.blocks) {
                 for (const Quantity& quantity : block.quantities)

@@ -81,6 +81,8 @@ SurfaceMesh extract(const SampleGrid& grid, float value, glm::dvec3 origin, cons
     return mesh;
 }
 
+} // namespace
+
 bool spans(const SampleGrid& grid, const Box& box) {
     const Lattice& lattice = grid.lattice;
     const glm::dvec3 first = lattice.position(glm::ivec3(0)), last = lattice.position(lattice.size - 1);
@@ -88,8 +90,6 @@ bool spans(const SampleGrid& grid, const Box& box) {
     return lattice.kind == LatticeKind::CC && glm::all(glm::lessThanEqual(glm::abs(first - box.lo), slack(first))) &&
            glm::all(glm::lessThanEqual(glm::abs(last - box.hi), slack(last)));
 }
-
-} // namespace
 
 SurfaceMesh extractIsosurface(const SampleGrid& grid, double value, const std::optional<Box>& box,
                               const Progress& progress) {

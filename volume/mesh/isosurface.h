@@ -26,6 +26,9 @@ namespace tessera::volume {
 SurfaceMesh extractIsosurface(const SampleGrid& grid, double value, const std::optional<Box>& box = {},
                               const Progress& progress = {});
 
+/// Whether the samples reach from one corner of a box to the other, so that surfaces need not be continued in it.
+bool spans(const SampleGrid& grid, const Box& box);
+
 /// The surface of a channel at a level of detail, cut at the bounds of the data set.
 SurfaceMesh extractIsosurface(const BrickSource& source, int channel, int time, double value, int level,
                               const Progress& progress = {});

@@ -19,9 +19,6 @@ std::string word(const std::string& name) {
     return out.empty() ? "value" : out;
 }
 
-glm::dvec3 placeOf(const SurfaceMesh& mesh, std::size_t vertex) {
-    return mesh.origin + glm::dvec3(mesh.positions[vertex]);
-}
 bool isFar(const SurfaceMesh& mesh) {
     return mesh.origin != glm::dvec3(0);
 }

@@ -83,6 +83,22 @@ glm::dvec3 originFor(const Box& box) {
     return origin;
 }
 
+std::vector<glm::vec3> faceNormals(const SurfaceMesh& mesh) {
+    std::vector<glm::dvec3> sums(mesh.positions.size(), glm::dvec3(0));
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const auto at = [&](int i) { return glm::dvec3(mesh.positions[triangle[i]]); };
+        const glm::dvec3 area = glm::cross(at(1) - at(0), at(2) - at(0));
+        for (int i = 0; i < 3; ++i) sums[triangle[i]] += area;
+    }
+    std::vector<glm::vec3> normals;
+    normals.reserve(sums.size());
+    for (const glm::dvec3& sum : sums) {
+        const double length = glm::length(sum);
+        normals.emplace_back(length > 0 ? sum / length : glm::dvec3(0));
+    }
+    return normals;
+}
+
 void removeUnused(SurfaceMesh& mesh) {
     std::vector<std::uint32_t> place(mesh.positions.size(), kUnused);
     for (const glm::uvec3& triangle : mesh.triangles)

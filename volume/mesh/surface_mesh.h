@@ -2,6 +2,7 @@
 
 #include "volume/field/lattice.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -21,9 +22,17 @@ struct SurfaceMesh {
     bool operator==(const SurfaceMesh&) const = default;
 };
 
+/// The place of a vertex.
+inline glm::dvec3 placeOf(const SurfaceMesh& mesh, std::size_t vertex) {
+    return mesh.origin + glm::dvec3(mesh.positions[vertex]);
+}
+
 /// The origin for what lies in a box: 0, unless the box is so far away that its details would be lost; then a round
 /// number near its middle.
 glm::dvec3 originFor(const Box& box);
+
+/// Normals of vertices as means of those of their triangles, by area.
+std::vector<glm::vec3> faceNormals(const SurfaceMesh& mesh);
 
 /// Removes vertices that no triangle uses; the others keep their order.
 void removeUnused(SurfaceMesh& mesh);

@@ -41,6 +41,12 @@ glm::ivec3 storageIndex(const Lattice& lattice, std::size_t index) {
     return {int(index % nx), int(index / nx % ny), int(index / (nx * ny))};
 }
 
+/// Whether an index is one of the lattice.
+bool isInside(const Lattice& lattice, glm::ivec3 at) {
+    const auto below = [](int i, int size) { return static_cast<unsigned>(i) < static_cast<unsigned>(size); };
+    return below(at.x, lattice.size.x) && below(at.y, lattice.size.y) && below(at.z, lattice.size.z);
+}
+
 /// A BCC source's stored values, prefiltered (volume/reconstruct/reconstruct.h); 0 where absent. Beyond the border of a
 /// part, its values are extrapolated.
 template <class T> std::vector<Filtered<T>> prefilteredValues(const Field& source) {
@@ -56,7 +62,7 @@ template <class T> std::vector<Filtered<T>> prefilteredValues(const Field& sourc
                 if (own == 0) continue;
                 const double centre = double(stored[index]);
                 const auto ownValue = [&](glm::ivec3 there) -> std::optional<double> {
-                    if (clampToLattice(lattice.kind, lattice.size, there) != there) return std::nullopt;
+                    if (!isInside(lattice, there)) return std::nullopt;
                     const std::size_t at = lattice.index(there);
                     return number(at) == own ? std::optional(double(stored[at])) : std::nullopt;
                 };
@@ -163,14 +169,32 @@ void fromBcc(const Field& source, Field& out, Mask* mask, const Mask* given, con
     T* const stored = out.as<T>().data();
     forSlices(target, progress, [&](int k) {
         const auto& [tx, ty, tz] = taps[k % sublattices];
+        struct Corner {
+            double weight;
+            std::size_t at;
+        };
+        std::array<Corner, 16> corners;
         std::size_t to = target.index({0, 0, k});
         for (int j = 0; j < target.size.y; ++j)
             for (int i = 0; i < target.size.x; ++i, ++to) {
                 std::size_t nearest = 0;
-                std::uint8_t own = 1;
-                if (given != nullptr) {
-                    own = (*given)[to];
-                    if (own == 0) continue;
+                std::uint8_t own = given != nullptr ? (*given)[to] : std::uint8_t(1);
+                if (own == 0) continue;
+                bool onlyOwn = true;
+                for (std::size_t s = 0; s < 2; ++s) {
+                    const PairTap &x = tx[s][std::size_t(i)], &y = ty[s][std::size_t(j)],
+                                  &z = tz[s][std::size_t(k / sublattices)];
+                    for (std::size_t corner = 0; corner < 8; ++corner) {
+                        Corner& one = corners[8 * s + corner];
+                        one.weight = (corner & 1 ? x.fraction : 1 - x.fraction) *
+                                     (corner & 2 ? y.fraction : 1 - y.fraction) *
+                                     (corner & 4 ? z.fraction : 1 - z.fraction);
+                        one.at = (corner & 1 ? x.upper : x.lower) + (corner & 2 ? y.upper : y.lower) +
+                                 (corner & 4 ? z.upper : z.lower);
+                        onlyOwn = onlyOwn && number(one.at) == own;
+                    }
+                }
+                if (given != nullptr && !onlyOwn) {
                     const glm::dvec3 position = target.position({i, j, k});
                     const auto found = nearestOf(from, number, own, from.index(from.nearest(position)), position);
                     if (!found) {
@@ -185,7 +209,7 @@ void fromBcc(const Field& source, Field& out, Mask* mask, const Mask* given, con
                     if (own == 0) continue;
                 }
                 const auto ownValue = [&](glm::ivec3 there) -> std::optional<double> {
-                    if (clampToLattice(from.kind, from.size, there) != there) return std::nullopt;
+                    if (!isInside(from, there)) return std::nullopt;
                     const std::size_t index = from.index(there);
                     return number(index) == own ? std::optional(double(values[index])) : std::nullopt;
                 };
@@ -193,22 +217,12 @@ void fromBcc(const Field& source, Field& out, Mask* mask, const Mask* given, con
                     return isBeside(from.kind, there, storageIndex(from, nearest));
                 };
                 double sum = 0;
-                for (std::size_t s = 0; s < 2; ++s) {
-                    const PairTap &x = tx[s][std::size_t(i)], &y = ty[s][std::size_t(j)],
-                                  &z = tz[s][std::size_t(k / sublattices)];
-                    for (std::size_t corner = 0; corner < 8; ++corner) {
-                        const double w = (corner & 1 ? x.fraction : 1 - x.fraction) *
-                                         (corner & 2 ? y.fraction : 1 - y.fraction) *
-                                         (corner & 4 ? z.fraction : 1 - z.fraction);
-                        const std::size_t at = (corner & 1 ? x.upper : x.lower) + (corner & 2 ? y.upper : y.lower) +
-                                               (corner & 4 ? z.upper : z.lower);
-                        if (number(at) == own)
-                            sum += w * double(values[at]);
-                        else if (w != 0)
-                            sum += w * continued(from.kind, storageIndex(from, at), ownValue, besideNearest)
-                                           .value_or(double(values[nearest]));
-                    }
-                }
+                for (const auto& [w, at] : corners)
+                    if (number(at) == own)
+                        sum += w * double(values[at]);
+                    else if (w != 0)
+                        sum += w * continued(from.kind, storageIndex(from, at), ownValue, besideNearest)
+                                       .value_or(double(values[nearest]));
                 stored[to] = range.store(sum / 2, own); // the weights of a sublattice sum to 1
             }
     });

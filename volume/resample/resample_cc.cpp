@@ -17,14 +17,6 @@ std::vector<AxisTaps> tapsOfSublattices(const Lattice& source, const Lattice& ta
     return taps;
 }
 
-/// A tap along z in the slices from `first` on.
-Tap within(Tap tap, int first) {
-    tap.first -= first;
-    tap.nearest -= first;
-    for (int& cell : tap.cell) cell -= first;
-    return tap;
-}
-
 /// Target slices in progress: `field` holds those from number `first` of the whole.
 struct TargetPart {
     Field& field;
@@ -45,7 +37,7 @@ void filterSlices(const CcTaps& taps, const CcPart& part, std::span<const Value>
         const AxisTaps& own = taps.kernel[number % sublattices];
         const std::size_t first = std::size_t(k) * sliceSize;
         SliceFilter<T, Value>(part.field, values, own, range, inSpace)
-            .run(within(own.z[number / sublattices], part.first), samples + first,
+            .run(countedFrom(own.z[number / sublattices], part.first), samples + first,
                  out.mask != nullptr ? out.mask->data() + first : nullptr);
     });
 }

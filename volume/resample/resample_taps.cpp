@@ -134,6 +134,13 @@ Tap tapAt(double cells, int count, const ResampleOptions& options) {
     return tap;
 }
 
+Tap countedFrom(Tap tap, int first) {
+    tap.first -= first;
+    tap.nearest -= first;
+    for (int& cell : tap.cell) cell -= first;
+    return tap;
+}
+
 namespace {
 
 bool sameAxis(const Lattice& a, const Lattice& b, int axis) {

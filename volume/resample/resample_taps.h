@@ -48,6 +48,9 @@ int tapCount(const ResampleOptions& options, int count);
 /// 1979.
 Tap tapAt(double cells, int count, const ResampleOptions& options);
 
+/// The same tap of samples that are counted from `first` on.
+Tap countedFrom(Tap tap, int first);
+
 struct AxisTaps {
     std::vector<Tap> x, y, z;
 };

@@ -21,7 +21,7 @@ Lattice4 frameLattice(const DatasetInfo& info, LatticeKind4 kind) {
             glm::dvec4(info.lattice.origin, 0), info.lattice.axes};
 }
 
-std::string textOf(double number) {
+std::string digitsOf(double number) {
     char text[32];
     std::snprintf(text, sizeof text, "%.12g", number);
     return text;
@@ -71,8 +71,8 @@ std::string whyNotD4(const DatasetInfo& info) {
     const double step = (info.times.back() - info.times.front()) / double(info.times.size() - 1);
     for (std::size_t t = 1; t < info.times.size(); ++t)
         if (std::abs(info.times[t] - info.times[t - 1] - step) > kUneven * step)
-            return "D4* needs evenly spaced times; from " + textOf(info.times[t - 1]) + " to " + textOf(info.times[t]) +
-                   " is not one of " + std::to_string(info.times.size() - 1) + " equal steps";
+            return "D4* needs evenly spaced times; from " + digitsOf(info.times[t - 1]) + " to " +
+                   digitsOf(info.times[t]) + " is not one of " + std::to_string(info.times.size() - 1) + " equal steps";
     return "";
 }
 

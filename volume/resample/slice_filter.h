@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <span>
@@ -20,43 +22,71 @@ namespace tessera::volume {
 template <class T> using SumOf = std::conditional_t<(sizeof(T) < 4), float, double>;
 
 /// The samples around a cell of a CC lattice that are of the part of one of its corners, and joined to that by steps
-/// along the axes towards it: nothing counts beyond a gap.
+/// along the axes towards it: nothing counts beyond a gap. One bit for each sample, eight rows of eight to a slice.
 class OwnWindow {
 public:
     static constexpr int kReach = 3; ///< samples beyond the cell
-    OwnWindow(const Lattice& lattice, const Mask& mask, glm::ivec3 cell, glm::ivec3 corner)
-        : lattice_(lattice), mask_(mask), first_(cell - kReach), corner_(corner), part_(mask[lattice.index(corner)]) {}
+    OwnWindow(const Lattice& lattice, const Mask& mask, glm::ivec3 cell, glm::ivec3 corner) : first_(cell - kReach) {
+        const std::uint8_t part = mask[lattice.index(corner)];
+        std::array<std::uint64_t, kEdge> own{};
+        const glm::ivec3 lo = glm::max(-first_, glm::ivec3(0)), hi = glm::min(lattice.size - first_, glm::ivec3(kEdge));
+        for (int z = lo.z; z < hi.z; ++z)
+            for (int y = lo.y; y < hi.y; ++y) {
+                const std::uint8_t* const row = &mask[lattice.index(first_ + glm::ivec3(lo.x, y, z))];
+                own[std::size_t(z)] |= bitsOf(row, hi.x - lo.x, part) << (kEdge * y + lo.x);
+            }
+        join(corner - first_, own);
+    }
 
-    bool has(glm::ivec3 at) {
-        const glm::ivec3 in = at - first_;
-        for (int axis = 0; axis < 3; ++axis)
-            if (in[axis] < 0 || in[axis] >= kEdge || at[axis] < 0 || at[axis] >= lattice_.size[axis]) return false;
-        State& known = known_[std::size_t((in.z * kEdge + in.y) * kEdge + in.x)];
-        if (known == State::Unknown) known = isJoined(at) ? State::Yes : State::No;
-        return known == State::Yes;
+    bool has(glm::ivec3 at) const {
+        const glm::uvec3 in(at - first_);
+        if (in.x >= unsigned(kEdge) || in.y >= unsigned(kEdge) || in.z >= unsigned(kEdge)) return false;
+        return (joined_[in.z] >> (unsigned(kEdge) * in.y + in.x) & 1u) != 0;
     }
 
 private:
-    enum class State : std::uint8_t { Unknown, Yes, No };
     static constexpr int kEdge = 2 + 2 * kReach;
+    static_assert(kEdge == 8);
+    static constexpr std::uint64_t kOnes = 0x0101010101010101;
 
-    bool isJoined(glm::ivec3 at) {
-        if (mask_[lattice_.index(at)] != part_) return false;
-        if (at == corner_) return true;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (at[axis] == corner_[axis]) continue;
-            glm::ivec3 nearer = at;
-            nearer[axis] += at[axis] < corner_[axis] ? 1 : -1;
-            if (has(nearer)) return true;
+    /// Which of up to eight numbers are `part`, the first one in the lowest bit.
+    static std::uint64_t bitsOf(const std::uint8_t* numbers, int count, std::uint8_t part) {
+        if (std::endian::native == std::endian::little && count == kEdge) {
+            constexpr std::uint64_t kLow = 0x7f * kOnes;
+            std::uint64_t apart = 0; // bytes that are 0 where a number is the part
+            std::memcpy(&apart, numbers, sizeof apart);
+            apart ^= part * kOnes;
+            const std::uint64_t zeros = ~(((apart & kLow) + kLow) | apart | kLow);
+            return (zeros >> 7) * 0x0102040810204080 >> 56; // moves the bits of the bytes side by side
         }
-        return false;
+        std::uint64_t bits = 0;
+        for (int i = 0; i < count; ++i) bits |= std::uint64_t(numbers[i] == part ? 1u : 0u) << i;
+        return bits;
     }
 
-    const Lattice& lattice_;
-    const Mask& mask_;
-    glm::ivec3 first_, corner_;
-    std::uint8_t part_;
-    std::array<State, std::size_t(kEdge) * kEdge * kEdge> known_{};
+    /// Goes outwards from the corner: a sample is joined if one beside it and nearer to the corner along an axis is.
+    void join(glm::ivec3 corner, const std::array<std::uint64_t, kEdge>& own) {
+        const std::uint64_t right = kOnes * ((0xfeu << corner.x) & 0xffu), left = kOnes * ((1u << corner.x) - 1),
+                            below = (std::uint64_t(1) << kEdge * corner.y) - 1,
+                            above = corner.y == kEdge - 1 ? 0 : ~std::uint64_t(0) << kEdge * (corner.y + 1);
+        const auto spread = [&](std::uint64_t from, std::uint64_t slice) {
+            std::uint64_t joined = from & slice, before = 0;
+            while (joined != before) {
+                before = joined;
+                joined |= ((before << 1 & right) | (before >> 1 & left) | (before << kEdge & above) |
+                           (before >> kEdge & below)) &
+                          slice;
+            }
+            return joined;
+        };
+        const auto z = std::size_t(corner.z);
+        joined_[z] = spread(std::uint64_t(1) << (kEdge * corner.y + corner.x), own[z]);
+        for (std::size_t k = z + 1; k < own.size(); ++k) joined_[k] = spread(joined_[k - 1], own[k]);
+        for (std::size_t k = z; k-- > 0;) joined_[k] = spread(joined_[k + 1], own[k]);
+    }
+
+    glm::ivec3 first_;
+    std::array<std::uint64_t, kEdge> joined_{};
 };
 
 /// Weights of Catmull-Rom for the samples around a cell, the one before it first; of the linear filter for its two.
@@ -74,7 +104,7 @@ double ofOwnPart(const Lattice& lattice, const Mask& mask, const std::array<cons
                  const Beyond& beyond) {
     const auto& [x, y, z] = taps;
     const glm::ivec3 cell(x->cell[0], y->cell[0], z->cell[0]);
-    OwnWindow window(lattice, mask, cell, {x->nearest, y->nearest, z->nearest});
+    const OwnWindow window(lattice, mask, cell, {x->nearest, y->nearest, z->nearest});
     const auto own = [&](glm::ivec3 at) {
         return window.has(at) ? std::optional(double(values[lattice.index(at)])) : std::nullopt;
     };

@@ -13,7 +13,7 @@ namespace {
 
 /// Samples of a field in a box.
 SampledBox cut(const Field& field, const IndexBox& box) {
-    SampledBox out{box, std::vector<float>(box.count()), {}, 1};
+    SampledBox out{box, UnfilledVector<float>(box.count()), {}, 1};
     if (field.mask) out.numbers.resize(out.values.size());
     const auto width = std::size_t(box.size().x);
     dispatch(field.type, [&]<class T>(T) {

@@ -3,11 +3,13 @@
 #include "volume/reconstruct/present_coverage.h"
 #include "volume/resample/slice_filter.h"
 #include "volume/sources/box_filter.h"
+#include "volume/sources/weighed_rows.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
+#include <utility>
 
 namespace tessera::volume {
 
@@ -33,31 +35,24 @@ Tap between(double index) {
     return tap;
 }
 
-/// A tap in a box that begins at `begin`.
-Tap within(Tap tap, int begin) {
-    tap.first -= begin;
-    tap.nearest -= begin;
-    for (int& cell : tap.cell) cell -= begin;
-    return tap;
-}
-
 /// Sum over the samples of the nearest one's part, with beyond(index, own) in place of others.
 template <class Beyond>
-double ownSum(const SampledBox& grid, const std::vector<float>& values, const std::array<const Tap*, 3>& taps,
+double ownSum(const SampledBox& grid, const UnfilledVector<float>& values, const std::array<const Tap*, 3>& taps,
               const Beyond& beyond) {
     Lattice box;
     box.size = grid.box.size();
-    const Tap x = within(*taps[0], grid.box.begin.x), y = within(*taps[1], grid.box.begin.y),
-              z = within(*taps[2], grid.box.begin.z);
+    const Tap x = countedFrom(*taps[0], grid.box.begin.x), y = countedFrom(*taps[1], grid.box.begin.y),
+              z = countedFrom(*taps[2], grid.box.begin.z);
     return ofOwnPart(box, grid.numbers, {&x, &y, &z}, values, beyond);
 }
 
-/// The cells of a grid around samples, as places in memory.
-class Cells {
+/// The range of the corners of the cell around each sample, a row of samples after another.
+class CellRanges {
 public:
     /// `tapOf(axis, index)`: of the samples in a box.
     template <class TapOf>
-    Cells(const SampledBox& grid, const IndexBox& samples, const TapOf& tapOf) : grid_(grid), samples_(samples) {
+    CellRanges(const SampledBox& grid, const IndexBox& samples, const TapOf& tapOf)
+        : grid_(grid), samples_(samples), least_(std::size_t(grid.box.size().x)), most_(least_.size()) {
         const glm::ivec3 size = grid.box.size(), steps(1, size.x, size.x * size.y);
         for (int axis = 0; axis < 3; ++axis)
             for (int i = samples.begin[axis]; i < samples.end[axis]; ++i) {
@@ -65,24 +60,22 @@ public:
                 along_[std::size_t(axis)].push_back({std::size_t((tap.cell[0] - grid.box.begin[axis]) * steps[axis]),
                                                      std::size_t((tap.cell[1] - tap.cell[0]) * steps[axis])});
             }
+        lo.resize(along_[0].size());
+        hi.resize(along_[0].size());
     }
-    /// Whether a value at a sample lies within the range of the corners of its cell, widened, where all samples of the
-    /// grid are of one part: then it lies within that of all samples that the kernel reads, too.
-    bool hold(glm::ivec3 at, double value) const {
-        if (!grid_.numbers.empty()) return false;
-        const Side &x = along_[0][std::size_t(at.x - samples_.begin.x)],
-                   &y = along_[1][std::size_t(at.y - samples_.begin.y)],
-                   &z = along_[2][std::size_t(at.z - samples_.begin.z)];
-        const float* first = grid_.values.data() + (x.place + y.place + z.place);
-        float lo = first[0], hi = lo;
-        for (const std::size_t step :
-             {x.step, y.step, x.step + y.step, z.step, z.step + x.step, z.step + y.step, z.step + x.step + y.step}) {
-            lo = std::min(lo, first[step]);
-            hi = std::max(hi, first[step]);
+    void setRow(int atY, int atZ) {
+        const Side &y = along_[1][std::size_t(atY - samples_.begin.y)],
+                   &z = along_[2][std::size_t(atZ - samples_.begin.z)];
+        const float* const first = grid_.values.data() + (y.place + z.place);
+        extremesOfRows({first, first + y.step, first + z.step, first + y.step + z.step}, least_.size(), least_.data(),
+                       most_.data());
+        for (std::size_t i = 0; i < lo.size(); ++i) {
+            const Side& x = along_[0][i];
+            lo[i] = std::min(least_[x.place], least_[x.place + x.step]);
+            hi[i] = std::max(most_[x.place], most_[x.place + x.step]);
         }
-        const double beyond = kCentredHeadroom * (double(hi) - double(lo));
-        return double(lo) - beyond <= value && value <= double(hi) + beyond;
     }
+    std::vector<float> lo, hi; ///< of the row
 
 private:
     struct Side {
@@ -91,6 +84,7 @@ private:
     const SampledBox& grid_;
     const IndexBox& samples_;
     std::array<std::vector<Side>, 3> along_;
+    std::vector<float> least_, most_; ///< of a row of the grid and its three neighbours
 };
 
 /// Range of the samples of a part that a kernel reads, widened.
@@ -101,7 +95,7 @@ Range allowed(const SampledBox& grid, const std::array<const Tap*, 3>& taps, std
             const std::size_t row = grid.box.place({taps[0]->first, taps[1]->first + j, taps[2]->first + k});
             for (int i = 0; i < taps[0]->count; ++i) {
                 const std::size_t at = row + std::size_t(i);
-                if (grid.numberAt(at) != number) continue;
+                if (!grid.numbers.empty() && grid.numbers[at] != number) continue;
                 range.lo = std::min(range.lo, double(grid.values[at]));
                 range.hi = std::max(range.hi, double(grid.values[at]));
             }
@@ -116,6 +110,7 @@ std::array<SampledBox, 2> prefiltered(const std::array<SampledBox, 2>& centred) 
     const IndexBox box{centred[0].box.begin + 1, centred[0].box.end - 1};
     const IndexBox& all = centred[0].box;
     const auto stepY = std::ptrdiff_t(all.size().x), stepZ = stepY * all.size().y;
+    const Cpu cpu = bestCpu();
     std::array<SampledBox, 2> out;
     for (int s = 0; s < 2; ++s) {
         const SampledBox &own = centred[std::size_t(s)], &other = centred[std::size_t(1 - s)];
@@ -131,21 +126,22 @@ std::array<SampledBox, 2> prefiltered(const std::array<SampledBox, 2>& centred) 
             for (int y = box.begin.y; y < box.end.y; ++y) {
                 const auto first = std::ptrdiff_t(all.place({box.begin.x, y, z}));
                 const int width = box.size().x;
+                if (!mixed) {
+                    prefilterRow(&own.values[std::size_t(first)], &other.values[std::size_t(first)], steps,
+                                 std::size_t(width), &to.values[place], cpu);
+                    place += std::size_t(width);
+                    continue;
+                }
                 for (int x = 0; x < width; ++x, ++place) {
                     const std::size_t at = std::size_t(first + x);
                     const float centre = own.values[at];
+                    const std::uint8_t number = own.numberAt(at);
+                    if (!to.numbers.empty()) to.numbers[place] = number;
+                    if (number == 0) continue;
                     double differences = 0;
-                    if (mixed) {
-                        const std::uint8_t number = own.numberAt(at);
-                        if (!to.numbers.empty()) to.numbers[place] = number;
-                        if (number == 0) continue;
-                        for (const std::ptrdiff_t step : steps)
-                            if (const auto near = std::size_t(first + x + step); other.numberAt(near) == number)
-                                differences += double(other.values[near]) - double(centre);
-                    } else {
-                        for (const std::ptrdiff_t step : steps)
-                            differences += double(other.values[std::size_t(first + x + step)]) - double(centre);
-                    }
+                    for (const std::ptrdiff_t step : steps)
+                        if (const auto near = std::size_t(first + x + step); other.numberAt(near) == number)
+                            differences += double(other.values[near]) - double(centre);
                     to.values[place] = float(double(centre) - differences / 12);
                 }
             }
@@ -265,31 +261,32 @@ SampledBox CentredGrid::labels(int sublattice, const SampledBox& grid, const Ind
 
 SampledBox CentredGrid::resampled(int sublattice, const SampledBox& grid, const IndexBox& texels) const {
     SampledBox out = boxLike(texels, grid);
+    const auto tap = [&](int axis, int i) -> const Tap& { return tapOf(sublattice, axis, i); };
+    const auto width = std::size_t(texels.size().x);
+    const auto inPart = [&](glm::ivec3 at, std::size_t to, double sum, std::uint8_t met) {
+        const std::array<const Tap*, 3> taps{&tap(0, at.x), &tap(1, at.y), &tap(2, at.z)};
+        const std::size_t nearest = grid.box.place({taps[0]->nearest, taps[1]->nearest, taps[2]->nearest});
+        const std::uint8_t number = grid.numbers[nearest];
+        if (number == 0 || (level_.finest && inGap(sublattice, at, grid))) return;
+        out.numbers[to] = number;
+        if (met != bitOf(number)) {
+            sum = ownSum(grid, grid.values, taps, [&](glm::ivec3 there, const auto& own) {
+                return continued(LatticeKind::CC, there, own, [](glm::ivec3) { return true; })
+                    .value_or(double(grid.values[nearest]));
+            });
+            const Range range = allowed(grid, taps, number);
+            sum = std::clamp(sum, range.lo, range.hi);
+        }
+        out.values[to] = float(sum);
+    };
     std::size_t place = 0;
-    filterBox<kReach>(
-        grid, texels, [&](int axis, int i) -> const Tap& { return tapOf(sublattice, axis, i); },
-        [&](glm::ivec3 at, double sum, std::uint8_t met) {
-            const std::size_t to = place++;
-            if (out.numbers.empty()) {
-                out.values[to] = float(sum);
-                return;
-            }
-            const std::array<const Tap*, 3> taps{&tapOf(sublattice, 0, at.x), &tapOf(sublattice, 1, at.y),
-                                                 &tapOf(sublattice, 2, at.z)};
-            const std::size_t nearest = grid.box.place({taps[0]->nearest, taps[1]->nearest, taps[2]->nearest});
-            const std::uint8_t number = grid.numbers[nearest];
-            if (number == 0 || (level_.finest && inGap(sublattice, at, grid))) return;
-            out.numbers[to] = number;
-            if (met != bitOf(number)) {
-                sum = ownSum(grid, grid.values, taps, [&](glm::ivec3 there, const auto& own) {
-                    return continued(LatticeKind::CC, there, own, [](glm::ivec3) { return true; })
-                        .value_or(double(grid.values[nearest]));
-                });
-                const Range range = allowed(grid, taps, number);
-                sum = std::clamp(sum, range.lo, range.hi);
-            }
-            out.values[to] = float(sum);
-        });
+    filterBox<kReach>(grid, texels, tap, [&](int y, int z, const double* sums, const std::uint8_t* met) {
+        float* const to = &out.values[place];
+        for (std::size_t x = 0; x < width && met == nullptr; ++x) to[x] = float(sums[x]);
+        for (std::size_t x = 0; x < width && met != nullptr; ++x)
+            inPart({texels.begin.x + int(x), y, z}, place + x, sums[x], met[x]);
+        place += width;
+    });
     return out;
 }
 
@@ -321,28 +318,28 @@ SampledBox CentredGrid::residual(const SampledBox& grid, const std::array<Sample
     SampledBox out = boxLike(of, grid);
     std::vector<double> sums(out.values.size());
     std::vector<std::uint8_t> met(grid.numbers.empty() ? 0 : sums.size());
+    const auto width = std::size_t(of.size().x);
     for (std::size_t s = 0; s < 2; ++s) {
         std::size_t place = 0;
-        filterBox<2>(
-            filtered[s], of,
-            [&](int axis, int i) -> const Tap& { return between_[s][std::size_t(axis)][std::size_t(i)]; },
-            [&](glm::ivec3, double sum, std::uint8_t bits) {
-                if (!met.empty()) met[place] |= bits;
-                sums[place++] += 0.5 * sum;
-            });
+        const auto tap = [&](int axis, int i) -> const Tap& { return between_[s][std::size_t(axis)][std::size_t(i)]; };
+        filterBox<2>(filtered[s], of, tap, [&](int, int, const double* own, const std::uint8_t* bits) {
+            for (std::size_t x = 0; x < width; ++x) sums[place + x] += 0.5 * own[x];
+            for (std::size_t x = 0; x < width && !met.empty(); ++x)
+                met[place + x] |= bits != nullptr ? bits[x] : bitOf(filtered[s].number);
+            place += width;
+        });
     }
     if (met.empty() && grid.number == 0) return out;
     for (int z = of.begin.z; z < of.end.z; ++z)
         for (int y = of.begin.y; y < of.end.y; ++y) {
             const std::size_t from = grid.box.place({of.begin.x, y, z}), to = of.place({of.begin.x, y, z});
-            for (int x = of.begin.x; x < of.end.x; ++x) {
-                const std::size_t i = std::size_t(x - of.begin.x);
+            for (std::size_t i = 0; i < width && met.empty(); ++i)
+                out.values[to + i] = float(double(grid.values[from + i]) - sums[to + i]);
+            for (std::size_t i = 0; i < width && !met.empty(); ++i) {
                 std::optional<double> value = sums[to + i];
-                if (!met.empty()) {
-                    const std::uint8_t number = out.numbers[to + i] = grid.numbers[from + i];
-                    if (number == 0) continue;
-                    if (met[to + i] != bitOf(number)) value = ofPart(filtered, {x, y, z}, number);
-                }
+                const std::uint8_t number = out.numbers[to + i] = grid.numbers[from + i];
+                if (number == 0) continue;
+                if (met[to + i] != bitOf(number)) value = ofPart(filtered, {of.begin.x + int(i), y, z}, number);
                 if (value) out.values[to + i] = float(double(grid.values[from + i]) - *value);
             }
         }
@@ -354,23 +351,34 @@ SampledBox CentredGrid::corrected(int sublattice, const SampledBox& grid, const 
     SampledBox out = boxLike(texels, grid);
     if (out.numbers.empty() && out.number == 0) return out;
     const auto own = [&](int axis, int i) -> const Tap& { return tapOf(sublattice, axis, i); };
-    const Cells cells(grid, texels, own);
-    std::size_t place = 0;
-    filterBox<kReach>(residual, texels, own, [&](glm::ivec3 at, double sum, std::uint8_t met) {
-        const std::size_t to = place++, from = centred.box.place(at);
+    CellRanges cells(grid, texels, own);
+    const auto width = std::size_t(texels.size().x);
+    const auto inRange = [&](glm::ivec3 at, std::size_t to, std::size_t from, double sum, bool whole) {
         const std::uint8_t number = centred.numberAt(from);
         if (!out.numbers.empty()) out.numbers[to] = number;
         if (number == 0) return;
-        if (met == bitOf(number)) {
-            const double value = double(centred.values[from]) + sum;
-            out.values[to] = float(value);
-            if (cells.hold(at, value)) return;
-        }
         const std::array<const Tap*, 3> taps{&own(0, at.x), &own(1, at.y), &own(2, at.z)};
-        if (met != bitOf(number))
-            sum = ownSum(residual, residual.values, taps, [](glm::ivec3, const auto&) { return 0.0; });
+        if (!whole) sum = ownSum(residual, residual.values, taps, [](glm::ivec3, const auto&) { return 0.0; });
         const Range range = allowed(grid, taps, number);
         out.values[to] = float(std::clamp(double(centred.values[from]) + sum, range.lo, range.hi));
+    };
+    std::size_t place = 0;
+    filterBox<kReach>(residual, texels, own, [&](int y, int z, const double* sums, const std::uint8_t* met) {
+        const std::size_t from = centred.box.place({texels.begin.x, y, z}), to = std::exchange(place, place + width);
+        const auto at = [&](std::size_t x) { return glm::ivec3(texels.begin.x + int(x), y, z); };
+        if (met != nullptr) {
+            for (std::size_t x = 0; x < width; ++x)
+                inRange(at(x), to + x, from + x, sums[x], met[x] == bitOf(centred.numberAt(from + x)));
+            return;
+        }
+        // Within the range of the corners of its cell, widened, a value lies within that of all that the kernel reads.
+        cells.setRow(y, z);
+        if (addWithin(&centred.values[from], sums, cells.lo.data(), cells.hi.data(), kCentredHeadroom, width,
+                      &out.values[to]) == 0)
+            return;
+        for (std::size_t x = 0; x < width; ++x)
+            if (!isWithin(double(centred.values[from + x]) + sums[x], cells.lo[x], cells.hi[x], kCentredHeadroom))
+                inRange(at(x), to + x, from + x, sums[x], true);
     });
     return out;
 }

@@ -231,7 +231,7 @@ private:
     SampledBox gathered(const BrickKey& key, const IndexBox& box, bool mixed) const {
         const Parameter& parameter = info_.parameters[std::size_t(channelOf(key).parameter)];
         const std::optional<int> label = labels_[std::size_t(key.channel)];
-        SampledBox out{box, std::vector<float>(box.count()), std::vector<std::uint8_t>(mixed ? box.count() : 0), 1};
+        SampledBox out{box, UnfilledVector<float>(box.count()), std::vector<std::uint8_t>(mixed ? box.count() : 0), 1};
         forBricks(
             key, box,
             [&](const BrickKey& from) {

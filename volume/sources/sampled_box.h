@@ -1,5 +1,7 @@
 #pragma once
 
+#include "volume/system/unfilled.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -25,7 +27,7 @@ struct IndexBox {
 /// Samples in a box, x fastest: of a regular grid, or of one sublattice in texels.
 struct SampledBox {
     IndexBox box;
-    std::vector<float> values;
+    UnfilledVector<float> values;
     std::vector<std::uint8_t> numbers; ///< of parts (volume/field/part_masks.h), 0 absent; empty: all have `number`
     std::uint8_t number = 1;
     std::uint8_t numberAt(std::size_t place) const { return numbers.empty() ? number : numbers[place]; }
@@ -39,10 +41,11 @@ template <class Visit> void forEachIndex(const IndexBox& box, const Visit& visit
             for (int x = box.begin.x; x < box.end.x; ++x, ++place) visit(glm::ivec3(x, y, z), place);
 }
 
-/// An empty box like another, with numbers where that has some.
+/// A box like another, with numbers where that has some; values are 0 unless all are to be present.
 inline SampledBox boxLike(const IndexBox& box, const SampledBox& other) {
-    SampledBox out{box, std::vector<float>(box.count()), {}, other.number};
+    SampledBox out{box, UnfilledVector<float>(box.count()), {}, other.number};
     if (!other.numbers.empty()) out.numbers.resize(out.values.size());
+    if (!other.numbers.empty() || other.number == 0) std::ranges::fill(out.values, 0.0f);
     return out;
 }
 

@@ -68,23 +68,55 @@ double dot(std::span<const double> a, std::span<const double> b) {
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-void multiply(const StencilSystem& s, std::span<const double> x, std::span<double> out) {
+/// The rows [begin, end) of the product, near the ends of the system.
+void multiplyEnds(const StencilSystem& s, std::span<const double> x, std::span<double> out, std::size_t begin,
+                  std::size_t end) {
     const std::size_t row = std::size_t(s.nx), plane = s.plane(), count = s.count();
-    parallelRanges(
-        std::size_t(s.nz),
-        [&](std::size_t zBegin, std::size_t zEnd) {
-            for (std::size_t p = zBegin * plane; p < zEnd * plane; ++p) {
-                double value = s.diag[p] * x[p];
-                if (p >= 1) value -= s.west[p] * x[p - 1];
-                if (p + 1 < count) value -= s.east[p] * x[p + 1];
-                if (p >= row) value -= s.south[p] * x[p - row];
-                if (p + row < count) value -= s.north[p] * x[p + row];
-                if (p >= plane) value -= s.down[p] * x[p - plane];
-                if (p + plane < count) value -= s.up[p] * x[p + plane];
-                out[p] = value;
-            }
-        },
-        32);
+    for (std::size_t p = begin; p < end; ++p) {
+        double value = s.diag[p] * x[p];
+        if (p >= 1) value -= s.west[p] * x[p - 1];
+        if (p + 1 < count) value -= s.east[p] * x[p + 1];
+        if (p >= row) value -= s.south[p] * x[p - row];
+        if (p + row < count) value -= s.north[p] * x[p + row];
+        if (p >= plane) value -= s.down[p] * x[p - plane];
+        if (p + plane < count) value -= s.up[p] * x[p + plane];
+        out[p] = value;
+    }
+}
+
+/// The same where every row has all its neighbours: without conditions, so that the compiler vectorises it.
+void multiplyInside(const StencilSystem& s, const double* x, double* out, std::size_t begin, std::size_t end) {
+    const std::size_t row = std::size_t(s.nx), plane = s.plane();
+    const double *diag = s.diag.data(), *west = s.west.data(), *east = s.east.data(), *south = s.south.data(),
+                 *north = s.north.data(), *down = s.down.data(), *up = s.up.data();
+    for (std::size_t p = begin; p < end; ++p) {
+        double value = diag[p] * x[p];
+        value -= west[p] * x[p - 1];
+        value -= east[p] * x[p + 1];
+        value -= south[p] * x[p - row];
+        value -= north[p] * x[p + row];
+        value -= down[p] * x[p - plane];
+        value -= up[p] * x[p + plane];
+        out[p] = value;
+    }
+}
+
+void multiply(const StencilSystem& s, std::span<const double> x, std::span<double> out) {
+    const std::size_t plane = s.plane(), count = s.count();
+    const auto planes = [&](std::size_t zBegin, std::size_t zEnd) {
+        const std::size_t begin = zBegin * plane, end = zEnd * plane;
+        const std::size_t first = std::clamp(plane, begin, end),
+                          last = std::clamp(count - std::min(plane, count), first, end);
+        multiplyEnds(s, x, out, begin, first);
+        multiplyInside(s, x.data(), out.data(), first, last);
+        multiplyEnds(s, x, out, last, end);
+    };
+    // Handing out less costs more than it takes, and several systems are solved at a time anyway.
+    constexpr std::size_t kWorthSharing = 100'000;
+    if (count < kWorthSharing)
+        planes(0, std::size_t(s.nz));
+    else
+        parallelRanges(std::size_t(s.nz), planes, 32);
 }
 
 } // namespace

@@ -52,11 +52,11 @@ int openInputDescriptor(const std::string& path) {
 std::string readInput(const std::string& path, std::uintmax_t most) {
     std::ifstream in = openInput(path);
     std::string bytes;
-    constexpr std::size_t kPiece = 1 << 20;
-    while (in) { // its size need not be known, as of files in /proc
-        const std::size_t before = bytes.size();
-        bytes.resize(before + kPiece);
-        in.read(bytes.data() + before, std::streamsize(kPiece));
+    constexpr std::size_t kFirst = 4096, kMostPiece = 1 << 20; // most files that are read whole are small
+    while (in) {                                               // its size need not be known, as of files in /proc
+        const std::size_t before = bytes.size(), piece = std::clamp(before, kFirst, kMostPiece);
+        bytes.resize(before + piece);
+        in.read(bytes.data() + before, std::streamsize(piece));
         bytes.resize(before + std::size_t(std::max<std::streamsize>(in.gcount(), 0)));
         if (bytes.size() > most)
             throw Error("is larger than " + textOfBytes(double(most)) + ", more than is read", path);

@@ -27,7 +27,7 @@ bool isFigure(const std::string& path) {
     return hasEnding(path, ".svg") || hasEnding(path, ".pdf");
 }
 
-DataRef dataOf(const StatsRequest& request, const Progress& progress) {
+DataRef measuredData(const StatsRequest& request, const Progress& progress) {
     DataRef data = dataNamed(request.inputs, request.import, progress);
     data.lattice = PictureLattice::Grid; // nothing is drawn, so no resampling for pictures
     data.derived = request.derived;
@@ -117,7 +117,7 @@ void print(const StatsRequest& request, const Question& question, const Answer& 
 void run(const StatsRequest& request) {
     check(request);
     const Progress progress = terminalProgress("stats");
-    const DataRef data = dataOf(request, progress.part(0, 0.1));
+    const DataRef data = measuredData(request, progress.part(0, 0.1));
     const Question question = questionOf(request, openInput(data, progress.part(0.1, 0.3)));
     rememberStated(request.import, question.info().name);
     const Progress rest = progress.part(0.3, 1);

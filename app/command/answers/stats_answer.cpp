@@ -3,7 +3,6 @@
 #include "app/pane/view_parts.h"
 #include "app/session/label_colors.h"
 #include "app/ui/ticks.h"
-#include "app/ui/time_text.h"
 #include "app/values/place_text.h"
 #include "app/values/table_json.h"
 #include "app/views/curves/section_data.h"
@@ -51,9 +50,8 @@ Json numberOrNull(double value) {
 }
 
 /// What a legend calls one of several requested times.
-std::string stateName(const Question& question, double time) {
-    const auto at = std::ranges::find(question.times, time) - question.times.begin();
-    return stateNames(question.info(), question.times)[std::size_t(at)];
+const std::string& stateName(const Question& question, double time) {
+    return question.states.at(std::size_t(std::ranges::lower_bound(question.times, time) - question.times.begin()));
 }
 
 /// Behind the time, where several are requested.

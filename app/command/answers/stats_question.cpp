@@ -2,6 +2,7 @@
 
 #include "app/command/command.h"
 #include "app/pane/view_parts.h"
+#include "app/ui/time_text.h"
 #include "app/views/statistics/region_data.h"
 #include "volume/base/error.h"
 #include "volume/flow/flow_channels.h"
@@ -83,7 +84,7 @@ std::vector<double> timesOf(const StatsOptions& options, const volume::DatasetIn
 
 Question questionOf(const StatsRequest& request, const Sources& sources) {
     const StatsOptions& options = request.options;
-    Question out{sources.numbers, sources.origin, {}, -1, -1, {}, {}, {}};
+    Question out{sources.numbers, sources.origin, {}, -1, -1, {}, {}};
     const volume::DatasetInfo& info = out.info();
     for (const std::string& name : splitList(options.of)) out.channels.push_back(channelNamed(out, name));
     if (out.channels.empty()) out.channels = comparedChannels(info);
@@ -110,6 +111,7 @@ Question questionOf(const StatsRequest& request, const Sources& sources) {
     if (!options.along.empty() && options.along != "x" && options.along != "y" && options.along != "z")
         throw Error("needs x, y or z, not \"" + options.along + "\"", "--along");
     out.times = timesOf(options, info);
+    if (out.times.size() > 1) out.states = stateNames(info, out.times);
     findKnown(out, options);
     return out;
 }

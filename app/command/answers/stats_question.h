@@ -70,9 +70,10 @@ struct Question {
     int label = -1, balance = -1;
     std::vector<int> regions; ///< requested label values; empty: all
     std::vector<glm::dvec3> line;
-    std::vector<double> times;
-    std::vector<bool> known = {}; ///< by channel: whether the numbers asked for are known as computed
-    bool errors = false;          ///< tables have bounds on errors of other numbers
+    std::vector<double> times = {};       ///< rising
+    std::vector<std::string> states = {}; ///< what a legend calls each, if there are several
+    std::vector<bool> known = {};         ///< by channel: whether the numbers asked for are known as computed
+    bool errors = false;                  ///< tables have bounds on errors of other numbers
     /// Where the numbers come from, in words.
     std::string origin() const;
     const volume::DatasetInfo& info() const { return source->info(); }

@@ -130,13 +130,14 @@ PointTable TextTable::table(std::vector<std::string>& notes) {
         notes.push_back(count(rows_ - kept.size(), "row is left out: it has", "rows are left out: they have") +
                         " no position");
     std::set<std::string> taken;
-    std::set<std::string> complex; // a quantity that is complex at one time is at all
+    std::map<std::string, int> counts; // of names that come again
+    std::set<std::string> complex;     // a quantity that is complex at one time is at all
     for (std::size_t c = 0; c < columns_.size(); ++c)
         if (!columns_[c].imaginary.empty()) complex.insert(headings_[c].name.substr(0, headings_[c].name.find(" @ ")));
     const auto add = [&](Heading heading, std::vector<double> values, std::vector<volume::Label> labels) {
         const std::string named = heading.name;
-        for (int again = 2; !taken.insert(heading.name).second; ++again)
-            heading.name = named + "." + std::to_string(again);
+        for (int& last = counts.try_emplace(named, 1).first->second; !taken.insert(heading.name).second;)
+            heading.name = named + "." + std::to_string(++last);
         if (heading.name != named) notes.push_back("column " + named + " comes again: it is named " + heading.name);
         if (kept.size() < values.size()) {
             std::vector<double> some;

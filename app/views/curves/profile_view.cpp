@@ -20,7 +20,7 @@ namespace tessera::app {
 namespace {
 
 constexpr std::size_t kMostProfiles = 8; ///< where the user has not chosen
-constexpr float kBeside = 0.5f;          ///< em: between a picture and its colours
+constexpr float kColorsGap = 0.5f;       ///< em: between a picture and its colours
 
 struct ProfileCache : ViewCache {
     AsyncQuery<ProfileQuery, Profile> answers;
@@ -113,7 +113,7 @@ void drawPicture(const vis::PlotTexture& picture, const std::vector<double>& tim
 /// The colours of a picture at its right, with the unit between the ends where that has room.
 void drawColors(const LegendEntry& entry, const PlotFrame& frame) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const float left = frame.max.x + em() * kBeside;
+    const float left = frame.max.x + em() * kColorsGap;
     drawLegendColumn(draw, {left, frame.min.y}, frame.height(), entry);
     const std::string unit = prettyUnit(entry.unit);
     if (ImGui::CalcTextSize(unit.c_str()).x > frame.height() - 3 * ImGui::GetTextLineHeight()) return;
@@ -165,7 +165,7 @@ private:
         float widest = 0;
         for (std::size_t c = 0; c < plots_.size() && pictures() && context_.decoration.legend; ++c)
             widest = std::max(widest, legendColumnWidth(legend(c)));
-        return widest > 0 ? widest + em() * kBeside : 0;
+        return widest > 0 ? widest + em() * kColorsGap : 0;
     }
 
     /// What is under the mouse, else what the linked time or cursor is at.

@@ -137,7 +137,7 @@ Table familyTable(const volume::DatasetInfo& info, const volume::Channel& channe
     return table;
 }
 
-glm::vec3 inkOf(ImU32 color) {
+glm::vec3 rgbOf(ImU32 color) {
     const ImVec4 c = ImGui::ColorConvertU32ToFloat4(color);
     return {c.x, c.y, c.z};
 }
@@ -151,7 +151,7 @@ std::vector<PlotBand> brushedBands(const vis::Selection& selection, const PlotCh
         for (const vis::BrushInterval& each : region->intervals) {
             bands.push_back({{each.lo, each.hi},
                              {-HUGE_VAL, HUGE_VAL},
-                             brush.enabled ? inkOf(brushColor(brush)) : glm::vec3(0.5f),
+                             brush.enabled ? rgbOf(brushColor(brush)) : glm::vec3(0.5f),
                              !brush.enabled || brush.inverted != (brush.combine == vis::BrushCombine::Minus)});
         }
     }
@@ -161,15 +161,15 @@ std::vector<PlotBand> brushedBands(const vis::Selection& selection, const PlotCh
 HistogramLook histogramLook(const ViewContext& context, const HistogramView& view, bool brushed) {
     const PlotColors colors = plotColors();
     const ImU32 focus = focusColor(context.session);
-    return {view.logCounts, brushed ? selectionName(context.session) : "", focus != colors.focus, inkOf(colors.bars),
-            inkOf(focus)};
+    return {view.logCounts, brushed ? selectionName(context.session) : "", focus != colors.focus, rgbOf(colors.bars),
+            rgbOf(focus)};
 }
 
 /// The same on a page, whose ground may be another than the window's.
 HistogramLook onPage(HistogramLook look, bool dark) {
     const auto [bars, focus] = sampleColors(dark);
-    look.all = inkOf(bars);
-    look.focus = look.ownFocus ? look.focus * (dark ? 1 : kBrightOnWhite) : inkOf(focus);
+    look.all = rgbOf(bars);
+    look.focus = look.ownFocus ? look.focus * (dark ? 1 : kBrightOnWhite) : rgbOf(focus);
     return look;
 }
 

@@ -7,11 +7,15 @@
 
 namespace tessera::app {
 
-void advance(Playback& playback, Animation& animation, double& time, const std::vector<double>& times, double seconds) {
+void advance(Playback& playback, Animation& animation, double& time, const std::vector<double>& times, double seconds,
+             bool behind) {
     const int count = static_cast<int>(times.size());
     if (!animation.playing || count < 2) return;
     // A long pause (a hidden window, a debugger) must not skip times.
     playback.steps += std::min(seconds, 0.5) * static_cast<double>(animation.speed);
+    if (behind && (playback.waited += seconds) < kLongestWait) return;
+    if (!behind && playback.waited > 0) playback.steps = std::min(playback.steps, 1.0); // that is not made up for
+    playback.waited = 0;
     int index = 0;
     for (int i = 1; i < count; ++i)
         if (std::abs(times[static_cast<std::size_t>(i)] - time) <
@@ -66,10 +70,10 @@ void advanceKeyframes(Playback& playback, Animation& animation, double seconds) 
 
 } // namespace
 
-void playOn(Playback& playback, Session& session, const std::vector<double>& times, double seconds) {
+void playOn(Playback& playback, Session& session, const std::vector<double>& times, double seconds, bool behind) {
     Animation& animation = session.animation;
     if (!animation.playing) return;
-    if (animation.tracks.empty()) return advance(playback, animation, session.time, times, seconds);
+    if (animation.tracks.empty()) return advance(playback, animation, session.time, times, seconds, behind);
     advanceKeyframes(playback, animation, seconds);
     applyTracks(session, animation.position);
 }

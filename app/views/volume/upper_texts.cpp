@@ -4,11 +4,13 @@
 #include "app/ui/fitted_text.h"
 #include "app/ui/widgets.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace tessera::app {
 
-UpperTexts upperTextsOf(const std::string& state, const std::string& stretch, float room) {
+UpperTexts upperTextsOf(const std::string& state, const std::string& stretch, const std::vector<std::string>& notes,
+                        float room) {
     UpperTexts out;
     const auto widthOf = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
     const auto add = [&](const std::string& text) {
@@ -22,7 +24,16 @@ UpperTexts upperTextsOf(const std::string& state, const std::string& stretch, fl
         add(stretch);
     else
         out.right = stretch;
+    for (const std::string& note : notes) add(note);
     return out;
+}
+
+std::vector<std::string> geometryNotes(const vis::Scene& scene) {
+    std::vector<std::string> notes;
+    for (const vis::GeometryLayer& layer : scene.geometry)
+        for (const std::string& note : layer.geometry->notes)
+            if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+    return notes;
 }
 
 } // namespace tessera::app

@@ -257,7 +257,8 @@ private:
             state = planeText(info_, *info_.plane);
         else if ((!context_.takesInput() || session_.data.timeAxis || view_.time) && info_.times.size() > 1)
             state = stateText(info_, session_.time, session_.data.axis);
-        return upperTextsOf(state, stretch, chain_.left() - picture_.min.x - em());
+        const std::vector<std::string> notes = scene_ ? geometryNotes(*scene_) : std::vector<std::string>();
+        return upperTextsOf(state, stretch, notes, chain_.left() - picture_.min.x - em());
     }
     void drawTexts() {
         const UpperTexts texts = upperTexts();

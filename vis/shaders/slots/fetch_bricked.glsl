@@ -26,13 +26,13 @@ Page pageAt(int field, vec3 p) {
 }
 
 // Within a brick and its halo one page suffices: positions near p are looked up in the brick of p. (Not on BCC, where
-// it was no faster, nor if parts have their own pages.)
+// it was no faster, nor if parts have their own pages, nor for a cubic kernel, which reads further.)
 Page heldPage = Page(vec3(0.0), 0.0);
 vec3 heldAt = vec3(0.0);
 bool held = false;
 
 void holdPage(int field, vec3 p) {
-#if LATER == 0 && !PARTS && !LENS_BENDS && !BCC
+#if LATER == 0 && !PARTS && !LENS_BENDS && !BCC && !CUBIC
     heldPage = pageAt(field, p);
     heldAt = p;
     held = true;

@@ -86,6 +86,8 @@ const FileFormat* formatNamed(std::string_view name) {
 const FileFormat* formatOfFile(const std::string& path) {
     if (const FileFormat* format = formatOf(path)) return format;
     if (namesFoamCase(path)) return formatNamed("OpenFOAM");
+    // Raw files and their sidecars are read as such, whatever they begin with.
+    if (path.ends_with(".raw") || path.ends_with(".json")) return nullptr;
     if (!whyNoFile(path).empty()) return nullptr;
     std::ifstream in(path, std::ios::binary);
     char head[132] = {};

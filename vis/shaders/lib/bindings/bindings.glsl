@@ -1,7 +1,7 @@
 // Uniforms and constants of the ray caster. The constants are generated #defines; the names of enumerators come from
 // vis/gl/shader_constants.h:
-//   FIELDS    number of bound fields (channels and their parts); FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1; LATER,
-//             PARTS, FIELD_PARTS(i), FIELD_MORE(i), PART_MARGIN: see lib/sampling/between_times.glsl
+//   FIELDS    number of bound fields (channels and their parts); FIELD_COVERAGE(i), FIELD_NEAREST(i): 0 or 1; CUBIC,
+//             FIELD_CUBIC(i): see lib/sampling/cubic.glsl; LATER, PARTS, FIELD_PARTS(i), FIELD_MORE(i), PART_MARGIN: see lib/sampling/between_times.glsl
 //   LAYERS    number of ray layers; LAYER_STYLE(i) (STYLE_COMPOSITE, ...), LAYER_FIELD(i), LAYER_SHADED(i);
 //             LAYER_LOOKUP(i): classification of a composite layer (LOOKUP_CURVE, ...);
 //             LAYER_GRADIENT(i): 1 if it shows the gradient magnitude; LAYER_LOOK(i): see lib/shading/draw_look.glsl;
@@ -45,9 +45,9 @@ uniform vec3 worldCell;           // world edges of the cell that steps are meas
 uniform float stepVoxels;
 uniform vec3 cellsPerWorld, cellsOffset; // p = world * cellsPerWorld + cellsOffset
 uniform float gradientReach, gradientScale; // volume/reconstruct/gradient.h: reach; factor to change per worldCell
-// 3 or 4, 4, kBisections, and 8 or (BCC) 16. Uniforms instead of constants, so that no compiler unrolls these loops: on
+// 3 or 4, 4, kBisections, 8 or (BCC) 16, and 8. Uniforms instead of constants, so that no compiler unrolls these loops: on
 // software GL that takes seconds.
-uniform int gradientDirections, diagonals, bisections, latticeCorners;
+uniform int gradientDirections, diagonals, bisections, latticeCorners, cubicCorners;
 
 // JITTER: 1 if ray starts are jittered. Number of the pass of a supersampled frame.
 uniform int passNumber;
