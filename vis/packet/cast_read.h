@@ -134,6 +134,10 @@ template <bool Bcc, bool Exact> struct Reader {
     }
     /// The same at any places.
     template <int Count> [[gnu::always_inline]] void row(const Fixed* at, const Mask* lanes, Found* found) const {
+        if (volume.cubic) {
+            for (int i = 0; i < Count; ++i) found[i] = cubic(at[i], lanes[i]);
+            return;
+        }
         Around places[Count];
         for (int i = 0; i < Count; ++i) places[i] = around(at[i], lanes[i]);
         for (int i = 0; i < Count; ++i) found[i] = valueOf(places[i], lanes[i]);
