@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kCacheBytes = std::size_t(64) << 20;
 
 /// The region of the point by the label of a parameter's parts, else by the first label; "" if there is none.
-std::string regionText(const volume::DatasetInfo& info, const Readout& readout, int parameter) {
+std::string regionRow(const volume::DatasetInfo& info, const Readout& readout, int parameter) {
     const volume::Parameter& own = info.parameters[static_cast<std::size_t>(parameter)];
     if (own.categorical) return {};
     std::optional<int> label;
@@ -334,7 +334,7 @@ Table readoutTable(const volume::DatasetInfo& info, const Readout& readout) {
         parameter.texts.push_back(channel.name);
         parameter.words[i] = titleWithUnit(channel.name, channel.unit);
         unit.texts.push_back(channel.unit);
-        region.texts.push_back(regionText(info, readout, channel.parameter));
+        region.texts.push_back(regionRow(info, readout, channel.parameter));
     }
     table.columns = {parameter, unit, valuesColumn(info, readout),
                      valuesColumn({.name = "nearest", .head = "Nearest"}, info, readout, &volume::ProbeValue::nearest)};

@@ -81,8 +81,8 @@ void measureRefined(const BenchVolume& volume, BenchTable& table) {
         const double ourTime = leastTime(draw);
         ours = picture.linear();
         const vis::Image wanted = shownOf(all, scene);
-        const auto likeness = [&](const vis::packet::PacketPicture& picture) {
-            return decimals(vis::difference(shownOf(picture, scene), wanted).psnr, 1);
+        const auto likeness = [&](const vis::packet::PacketPicture& of) {
+            return decimals(vis::difference(shownOf(of, scene), wanted).psnr, 1);
         };
         table.rows.push_back({volume.name, style.name, decimals(allTime, 0), decimals(ourTime, 0),
                               decimals(allTime / ourTime, 2), decimals(picture.raysCast(), 2), likeness(ours),

@@ -40,7 +40,7 @@ volume::CurvesQuery queryOf(const PlotCurvesQuery& asked, const volume::DatasetI
     return query;
 }
 
-std::string labelOf(const volume::DatasetInfo& info, const PlotCurvesQuery& asked) {
+std::string curveLabel(const volume::DatasetInfo& info, const PlotCurvesQuery& asked) {
     return asked.regions.empty() ? std::string() : info.channel(asked.regions.front().label).name;
 }
 
@@ -236,7 +236,7 @@ std::string curvesOrigin(const volume::DatasetInfo& info, const NumberOrigin& or
     if (channels.empty() || integrals || asked.brushes.selection.active() || asked.regions.size() > 1)
         return originText(origin, info, channels) + (channels.empty() ? "" : placeOf(info, asked));
     return originText(origin, info, channels,
-                      knownStatistics(origin, info, channels, labelOf(info, asked), info.times)) +
+                      knownStatistics(origin, info, channels, curveLabel(info, asked), info.times)) +
            placeOf(info, asked);
 }
 
