@@ -21,7 +21,7 @@ struct Counted {
     std::map<std::pair<int, int>, double> all, selected;
 };
 
-std::shared_ptr<const volume::BrickSource> smallCell() {
+std::shared_ptr<const volume::BrickSource> gasCell() {
     return volume::makeMemorySource(formula::makeCell(), {});
 }
 
@@ -82,7 +82,7 @@ protected:
             }
         }
     }
-    std::shared_ptr<const volume::BrickSource> source = smallCell();
+    std::shared_ptr<const volume::BrickSource> source = gasCell();
 };
 
 TEST_F(Densities, AreThoseOfTheSamples) {

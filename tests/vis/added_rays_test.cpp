@@ -16,7 +16,7 @@ constexpr glm::ivec2 kPicture{203, 157}; // no multiple of a block
 constexpr double kSame = 50;             // dB
 constexpr int kRays = 4;
 
-Scene sceneOf(std::vector<Layer> layers) {
+Scene layeredScene(std::vector<Layer> layers) {
     Scene scene = wavyScene(true);
     scene.layers = std::move(layers);
     scene.render.samples = kRays;
@@ -41,22 +41,22 @@ std::vector<Style> styles() {
         return layered(IsoLayer{.channel = "a", .value = 317, .look = *Look::preset(look)});
     };
     std::vector<Style> out{
-        {"translucent", sceneOf({with(volume, &VolumeLayer::shaded, false)})},
-        {"shaded", sceneOf({layered(volume)})},
-        {"opaque", sceneOf({with(volume, &VolumeLayer::density, 10.0f)})},
-        {"pre-integrated", sceneOf({with(volume, &VolumeLayer::classification, Classification::PreIntegrated)})},
-        {"iso-surface", sceneOf({layered(IsoLayer{.channel = "a", .value = 317})})},
-        {"surfaces one in the other", sceneOf({layered(IsoLayer{.channel = "a", .value = 317, .opacity = 0.4f}),
-                                               layered(IsoLayer{.channel = "b", .value = 0.7, .opacity = 0.6f})})},
+        {"translucent", layeredScene({with(volume, &VolumeLayer::shaded, false)})},
+        {"shaded", layeredScene({layered(volume)})},
+        {"opaque", layeredScene({with(volume, &VolumeLayer::density, 10.0f)})},
+        {"pre-integrated", layeredScene({with(volume, &VolumeLayer::classification, Classification::PreIntegrated)})},
+        {"iso-surface", layeredScene({layered(IsoLayer{.channel = "a", .value = 317})})},
+        {"surfaces one in the other", layeredScene({layered(IsoLayer{.channel = "a", .value = 317, .opacity = 0.4f}),
+                                                    layered(IsoLayer{.channel = "b", .value = 0.7, .opacity = 0.6f})})},
         {"a slice with contour lines",
-         sceneOf({layered(SliceLayer{.channel = "a", .atCursor = false, .position = 0.45, .contours = 9})})},
-        {"charcoal", sceneOf({drawn("charcoal")})},
-        {"hatching", sceneOf({drawn("hatching")})},
-        {"cartoon", sceneOf({drawn("cartoon")})},
-        {"wire", sceneOf({drawn("wire")})},
+         layeredScene({layered(SliceLayer{.channel = "a", .atCursor = false, .position = 0.45, .contours = 9})})},
+        {"charcoal", layeredScene({drawn("charcoal")})},
+        {"hatching", layeredScene({drawn("hatching")})},
+        {"cartoon", layeredScene({drawn("cartoon")})},
+        {"wire", layeredScene({drawn("wire")})},
     };
     for (const RayStyle style : {RayStyle::Maximum, RayStyle::Minimum, RayStyle::Average, RayStyle::XRay})
-        out.push_back({"projection", sceneOf({with(across, &VolumeLayer::style, style)})});
+        out.push_back({"projection", layeredScene({with(across, &VolumeLayer::style, style)})});
     Scene bands = out[0].scene; // thin shells of one value
     bands.transfer["a"].opacity = {{0, 0}, {0.5f, 0}, {0.505f, 1}, {0.51f, 0}, {0.7f, 0}, {0.703f, 1}, {0.706f, 0}};
     bands.render.stepVoxels = 0.05f;

@@ -8,7 +8,7 @@
 namespace tessera::volume {
 namespace {
 
-constexpr LatticeKind kKinds[] = {LatticeKind::CC, LatticeKind::BCC};
+constexpr LatticeKind kCubicKinds[] = {LatticeKind::CC, LatticeKind::BCC};
 
 std::size_t at(const BrickSamples& of, glm::ivec3 i) {
     return (std::size_t(i.z) * std::size_t(of.size.y) + std::size_t(i.y)) * std::size_t(of.size.x) + std::size_t(i.x);
@@ -46,7 +46,7 @@ TEST(Cubic, PolynomialsOfThirdDegreeAreExact) {
         return q.x * q.x * q.x - 2 * q.x * q.y * q.z + q.y * q.y - 0.7 * q.z * q.z * q.y + 0.3 * q.x - 1;
     };
     std::mt19937 random(3);
-    for (const LatticeKind kind : kKinds) {
+    for (const LatticeKind kind : kCubicKinds) {
         const LevelGeometry geometry{kind, 1, 0};
         const int reach = prefilterReach(Prefilter::Cubic, geometry), inner = 7;
         const BrickSamples raw = sampled(kind, inner + 2 * reach, value),
@@ -69,7 +69,7 @@ TEST(Cubic, PolynomialsOfThirdDegreeAreExact) {
 
 // Against the steps of the definition, sample by sample; absent samples count as the one beside which they are read.
 TEST(Cubic, CoefficientsAreThoseOfTheSteps) {
-    for (const LatticeKind kind : kKinds)
+    for (const LatticeKind kind : kCubicKinds)
         for (const bool masked : {false, true}) {
             const LevelGeometry geometry{kind, 1, 0};
             const int slices = kind == LatticeKind::BCC ? 2 : 1, reach = prefilterReach(Prefilter::Cubic, geometry);
@@ -122,7 +122,7 @@ TEST(Cubic, CoefficientsAreThoseOfTheSteps) {
 // close.
 TEST(Cubic, CoefficientsStayWithinTheOvershoot) {
     double most = 0;
-    for (const LatticeKind kind : kKinds) {
+    for (const LatticeKind kind : kCubicKinds) {
         const LevelGeometry geometry{kind, 1, 0};
         const int reach = prefilterReach(Prefilter::Cubic, geometry), edge = 4 * reach + 1;
         const double middle = 2 * reach + (kind == LatticeKind::BCC ? 0.5 : 0);

@@ -47,10 +47,6 @@ Topology topologyOf(const SurfaceMesh& mesh) {
     return out;
 }
 
-glm::dvec3 placeOf(const SurfaceMesh& mesh, std::size_t vertex) {
-    return mesh.origin + glm::dvec3(mesh.positions[vertex]);
-}
-
 template <class Function> SampleGrid gridOf(const Lattice& lattice, const Function& value) {
     SampleGrid grid{lattice, {}, {}};
     for (int k = 0; k < lattice.size.z; ++k)
