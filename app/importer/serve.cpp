@@ -2,6 +2,7 @@
 
 #include "app/importer/describe_source.h"
 #include "app/importer/frame.h"
+#include "app/importer/kept_times.h"
 #include "app/importer/open_source.h"
 #include "app/importer/readers/check_file.h"
 #include "app/importer/readers/vtk_messages.h"
@@ -15,7 +16,6 @@
 #include <cstdlib>
 #include <exception>
 #include <iostream>
-#include <list>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -32,7 +32,6 @@ using volume::MessageKind;
 using volume::ScalarType;
 
 constexpr std::size_t kMostKilobytesKept = 512 * 1024; // of data kept from earlier requests
-constexpr std::size_t kMostKept = 256;                 // times of files, which are looked through at each request
 constexpr const char* kNoMemory = "not enough memory";
 constexpr std::chrono::hours kMostTime{1}; // of the processor for one answer
 
@@ -43,17 +42,9 @@ struct OpenFile {
     std::string head; ///< of a mesh whose files need not all be read (meshHead)
 };
 
-/// The blocks of a file at one time.
-struct Loaded {
-    std::size_t file;
-    int time;
-    std::vector<Block> blocks;
-    std::size_t kilobytes;
-};
-
 struct State {
     std::vector<OpenFile> files;
-    std::list<Loaded> loaded; ///< most recent first
+    KeptTimes loaded{kMostKilobytesKept};
     KnownSamplings samplings;
 };
 
@@ -71,29 +62,11 @@ void sendMessage(MessageKind kind, const std::string& text) {
     std::fflush(stdout);
 }
 
-std::size_t kilobytesOf(const std::vector<Block>& blocks) {
-    std::size_t sum = 0;
-    for (const Block& block : blocks) sum += block.data->GetActualMemorySize();
-    return sum;
-}
-
-Loaded& load(State& state, std::size_t file, int time) {
-    for (auto at = state.loaded.begin(); at != state.loaded.end(); ++at)
-        if (at->file == file && at->time == time) {
-            state.loaded.splice(state.loaded.begin(), state.loaded, at);
-            return state.loaded.front();
-        }
+const std::vector<Block>& load(State& state, std::size_t file, int time) {
+    if (const std::vector<Block>* const kept = state.loaded.find(file, time)) return *kept;
     OpenFile& opened = state.files[file];
     if (!opened.source) opened.source = openSource(opened.files);
-    Loaded now{file, time, readBlocks(*opened.source, time), 0};
-    now.kilobytes = kilobytesOf(now.blocks);
-    std::size_t kept = now.kilobytes, count = 1;
-    for (auto at = state.loaded.begin(); at != state.loaded.end();) {
-        kept += at->kilobytes;
-        at = kept > kMostKilobytesKept || ++count > kMostKept ? state.loaded.erase(at) : std::next(at);
-    }
-    state.loaded.push_front(std::move(now));
-    return state.loaded.front();
+    return state.loaded.add(file, time, readBlocks(*opened.source, time));
 }
 
 /// Opens a file and describes it. With `like` the description of the previous file is reused where the header says that
@@ -117,12 +90,12 @@ OpenFile openFile(State& state, const std::vector<std::string>& files, bool like
         }
     }
     if (file.blocks.empty()) {
-        state.loaded.clear();
+        state.loaded.keepLatest(0);
         for (const std::size_t time : source.shownAt) {
             std::vector<Block> blocks = readBlocks(source, int(time));
             mergeBlocks(file.blocks, describeBlocks(source, blocks));
-            state.loaded.push_front({state.files.size(), int(time), blocks, kilobytesOf(blocks)});
-            if (state.loaded.size() > 2) state.loaded.pop_back();
+            state.loaded.add(state.files.size(), int(time), std::move(blocks));
+            state.loaded.keepLatest(2);
         }
     }
     bool any = false;
@@ -161,8 +134,7 @@ void sendFrame(State& state, const Request& request) {
     if (request.array < -1 || request.array >= int(ref.arrays.size()) || request.time < 0 ||
         request.time >= std::max(1, int(ref.block.times.size())))
         throw std::runtime_error("no such array or time in the request");
-    Loaded& loaded = load(state, request.file, request.time);
-    const Block* block = blockAt(loaded.blocks, file.blocks, request.block);
+    const Block* block = blockAt(load(state, request.file, request.time), file.blocks, request.block);
     const Frame frame = frameOf(block, ref, request.array, request.component, request.lattice, state.samplings);
     const std::uint32_t head[2] = {static_cast<std::uint32_t>(frame.type), frame.mask.empty() ? 0u : 1u};
     const auto code = static_cast<std::uint32_t>(MessageKind::Frame);
@@ -191,9 +163,9 @@ void sendRanges(State& state, const std::string& line) {
         time < 0 || time >= std::max(1, int(file.blocks[block].block.times.size())))
         throw std::runtime_error("bad request");
     const BlockRef& ref = file.blocks[block];
-    Loaded& loaded = load(state, fileIndex, time);
+    const std::vector<Block>& loaded = load(state, fileIndex, time);
     const ArrayRef& array = ref.arrays[std::size_t(arrayIndex)];
-    const Block* at = blockAt(loaded.blocks, file.blocks, block);
+    const Block* at = blockAt(loaded, file.blocks, block);
     vtkDataArray* from = at != nullptr ? findArray(at->data, array) : nullptr;
     sendMessage(MessageKind::Header, rangesJson(at != nullptr ? at->data : nullptr, from, array, between != 0));
 }

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
+#include <string>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace tessera {
@@ -60,6 +62,15 @@ TEST_F(KeptNumbers, ADamagedFileIsComputedAnewAndReplaced) {
         EXPECT_EQ(ask(), expected_);
         EXPECT_EQ(computed_, 1);
     }
+}
+
+TEST_F(KeptNumbers, WhatAKilledProgramLeftIsRemoved) {
+    const pid_t gone = ::fork();
+    if (gone == 0) ::_exit(0);
+    ASSERT_EQ(::waitpid(gone, nullptr, 0), gone);
+    std::ofstream(folder_ / ("three.part-" + std::to_string(gone))) << "half";
+    EXPECT_EQ(ask(), expected_);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
 }
 
 TEST_F(KeptNumbers, AreComputedWhereNothingCanBeKept) {

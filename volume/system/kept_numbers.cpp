@@ -1,5 +1,7 @@
 #include "volume/system/kept_numbers.h"
 
+#include "volume/system/part_file.h"
+
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -8,7 +10,6 @@
 #include <optional>
 #include <span>
 #include <sys/stat.h>
-#include <unistd.h>
 
 namespace tessera {
 
@@ -55,7 +56,8 @@ std::optional<std::vector<float>> kept(const std::string& path, Head expected) {
 
 /// Without waiting for the disk: what a crash leaves does not have the checksum.
 void keep(const std::string& path, const Head& head, std::span<const float> numbers) {
-    const std::string temporary = path + "." + std::to_string(::getpid());
+    const std::string temporary = partFileOf(path);
+    removeLeftParts(path);
     std::error_code ignored;
     {
         std::ofstream out(temporary, std::ios::binary);
