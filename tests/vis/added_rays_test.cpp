@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <gtest/gtest.h>
+#include <utility>
 
 /// Pictures whose pixels have further rays only where these are needed, beside those with all rays everywhere.
 namespace tessera::vis {
@@ -218,6 +219,53 @@ TEST(AddedRays, SmoothLightIsPredicted) {
     EXPECT_LT(round.share, 0.1);
     const auto grains = [](glm::dvec2 p) { return 0.5 + 0.1 * std::sin(40 * p.x) * std::sin(57 * p.y); };
     EXPECT_LT(farthest(sampled(grains, kSmooth, 32)), 1e-6);
+}
+
+/// Where most blocks of a group show grain, all of it have all rays; else those that show grain.
+TEST(AddedRays, GroupsOfGrainHaveAllRays) {
+    constexpr glm::ivec2 kGrain{192, 96};
+    const auto stripes = [](int begin, int end) { // rows of each group
+        return [=](glm::dvec2 p) {
+            const double row = std::fmod(p.y, AddedRays::kGroup);
+            return 0.5 + (row >= begin && row < end ? 0.2 * std::sin(40 * p.x) * std::sin(57 * p.y) : 0);
+        };
+    };
+    const Sampled most = sampled(stripes(4, 22), kGrain, AddedRays::kGroup); // which touch three quarters of the blocks
+    EXPECT_EQ(most.share, 1);
+    EXPECT_LT(farthest(most), 1e-6);
+    const Sampled half = sampled(stripes(9, 15), kGrain, AddedRays::kGroup);
+    EXPECT_GT(half.share, 0.25);
+    EXPECT_LT(half.share, 0.6);
+    EXPECT_LT(farthest(half), 1e-6);
+    const auto left = [&](glm::dvec2 p) { return p.x < 70 ? stripes(4, 22)(p) : 0.5; };
+    const Sampled beside = sampled(left, kGrain, AddedRays::kGroup);
+    EXPECT_GT(beside.share, 1.0 / 3);
+    EXPECT_LT(beside.share, 0.5) << "groups without grain";
+    EXPECT_EQ(beside.ours, sampled(left, kGrain, 3 * AddedRays::kGroup).ours) << "whatever the tiles";
+}
+
+/// Where nothing is drawn but strokes and grain, all rays are cast, without choosing.
+TEST(AddedRays, StrokesHaveAllRays) {
+    const auto shareOf = [](const std::vector<Layer>& layers) {
+        Scene scene;
+        scene.layers = layers;
+        const Tile area{{0, 0}, {70, 50}};
+        AddedRays added;
+        added.begin(scene, {70, 50}, area);
+        packet::PacketPicture picture{.box = {}, .rgba = {}};
+        picture.begin({70, 50}, {}, false);
+        added.takeFirst(picture, area);
+        added.choose(area);
+        return std::pair(added.share(), added.blocks(area).size());
+    };
+    Layer drawn = layered(IsoLayer{.channel = "a", .value = 317, .look = *Look::preset("charcoal")});
+    const Layer plain = layered(IsoLayer{.channel = "a", .value = 317});
+    EXPECT_EQ(shareOf({drawn}), std::pair(1.0, std::size_t(6))) << "whole groups";
+    EXPECT_LT(shareOf({drawn, plain}).first, 0.1) << "the surface may be smooth";
+    drawn.visible = false;
+    EXPECT_LT(shareOf({drawn}).first, 0.1);
+    drawn = layered(VolumeLayer{.channel = "a", .style = RayStyle::Maximum, .look = *Look::preset("charcoal")});
+    EXPECT_LT(shareOf({drawn}).first, 0.1) << "a projection has no look";
 }
 
 /// What lies out of focus has all rays: the first of a pixel say nothing of those from elsewhere on the lens.

@@ -72,7 +72,6 @@ std::shared_ptr<const Geometry> ballAndSpiral(bool normals) {
     return geometry;
 }
 
-/// Two triangles, the edge between which crosses the middles of pixels seen from the front.
 std::shared_ptr<const Geometry> strokedBall() {
     auto geometry = std::make_shared<Geometry>(*ballAndSpiral(true));
     for (std::size_t i = 0; i < geometry->mesh.positions.size(); ++i)
@@ -80,6 +79,7 @@ std::shared_ptr<const Geometry> strokedBall() {
     return geometry;
 }
 
+/// Two triangles, the edge between which crosses the middles of pixels seen from the front.
 std::shared_ptr<const Geometry> sheet() {
     auto geometry = std::make_shared<Geometry>();
     geometry->mesh.positions = {{4, 2, 20}, {24, 2, 20}, {24, 22, 20}, {4, 22, 20}};

@@ -1,4 +1,5 @@
 #include "tests/vis/renderer_scenes.h"
+#include "vis/demand/tile_order.h"
 #include "vis/gl/driver.h"
 #include "vis/view/view_target.h"
 
@@ -218,6 +219,29 @@ TEST_F(Refinement, NotInMotionAndNotWhereThePictureIsQuick) {
     for (int i = 0; i < 300; ++i) renderer.render(*target, shown, {.size = kSize, .budgetMs = 10000});
     EXPECT_TRUE(target->state.converged());
     EXPECT_EQ(target->state.halfTilesDone(), 0);
+}
+
+/// What was known of a picture with several rays a pixel is no part of the next one, which has one.
+TEST_F(Refinement, OneRayAfterSeveralThatWereInterrupted) {
+    open();
+    Scene shown = scene(Engine::Processor);
+    shown.render.stepVoxels = 0.5f;
+    shown.render.samples = 4;
+    auto geometry = std::make_shared<Geometry>(); // lines that further rays have to be cast along
+    geometry->lines.positions = {{2, 3, 20}, {25, 20, 16}, {4, 22, 30}};
+    geometry->lines.ends = {3};
+    shown.geometry = {{.geometry = geometry, .style = {.lineWidth = 0.7f}}};
+    ASSERT_TRUE(frames(shown, [&](const FrameStatus& status) {
+        EXPECT_FALSE(status.complete);
+        const int perPass = int(tilesFromMiddle(target->state.stale(), target->pace().tileEdge()).size());
+        return target->state.full() && target->state.tilesDone() > 3 * perPass;
+    }));
+    shown.render.samples = 1;
+    shown.camera.target.x += 0.1f;
+    ASSERT_TRUE(frames(shown, [](const FrameStatus& status) { return status.complete; }));
+    const ViewTargetPtr other = renderer.makeTarget();
+    EXPECT_TRUE(renderer.render(*other, shown, {.size = kSize, .wait = true}).complete);
+    EXPECT_LT(test::maxDifference(renderer.readLinear(*target), renderer.readLinear(*other)), 1e-6);
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
+#include <variant>
 
 namespace tessera::vis {
 
@@ -15,6 +16,9 @@ namespace {
 
 constexpr int kProbes = 17;  ///< one block of so many has all rays in any case; prime, so that every line meets some
 constexpr int kFollowed = 2; ///< pixels around one that differs from what was predicted
+static_assert(kFollowed <= AddedRays::kBlock);
+/// Of the blocks of a group that show anything: if more are chosen, all of them are.
+constexpr double kDense = 0.6;
 
 float greatest(const glm::vec4& of) {
     return std::max({std::abs(of.x), std::abs(of.y), std::abs(of.z), std::abs(of.w)});
@@ -32,6 +36,32 @@ template <class Test> bool anyIn(const Tile& tile, Test&& test) {
     return false;
 }
 
+/// Calls body(group), a tile of blocks, for those of a tile of blocks that begins with a group.
+template <class Body> void forEachGroup(const Tile& blocks, Body&& body) {
+    constexpr int kEdge = AddedRays::kGroup / AddedRays::kBlock;
+    for (int y = blocks.begin.y; y < blocks.end.y; y += kEdge)
+        for (int x = blocks.begin.x; x < blocks.end.x; x += kEdge)
+            body(intersection({{x, y}, glm::ivec2(x, y) + kEdge}, blocks));
+}
+
+/// Whether all that is drawn is strokes and grain, which differ from pixel to pixel.
+bool drawsGrainAlone(const Scene& scene) {
+    bool any = false;
+    for (const Layer& layer : scene.layers) {
+        if (!layer.visible) continue;
+        const VolumeLayer* const volume = std::get_if<VolumeLayer>(&layer.technique);
+        const Look* const look = lookOf(layer.technique);
+        if ((volume && volume->style != RayStyle::Composite) || !look || !look->charcoal) return false;
+        any = true;
+    }
+    for (const GeometryLayer& layer : scene.geometry) {
+        if (!drawn(scene, layer)) continue;
+        if (!layer.style.look.charcoal) return false;
+        any = true;
+    }
+    return any;
+}
+
 /// The colour of a pixel of a picture, part of which may be left out.
 glm::vec4 colorIn(const packet::PacketPicture& picture, glm::ivec2 pixel) {
     if (!Tile{picture.box.begin, picture.box.end}.holds(pixel)) return glm::vec4(0);
@@ -47,7 +77,7 @@ void AddedRays::begin(const Scene& scene, glm::ivec2 size, const Tile& area) {
     size_ = size;
     area_ = area;
     // Rays that a lens spreads over what is out of focus say nothing of each other.
-    seen_ = {.bound = scene.camera.aperture > 0 ? 0 : kAlike,
+    seen_ = {.bound = scene.camera.aperture > 0 || drawsGrainAlone(scene) ? 0 : kAlike,
              .ground = glm::vec3(linearFromSrgb(glm::dvec3(groundColor(scene)))),
              .showGround = scene.showGround,
              .tone = scene.tone};
@@ -73,9 +103,8 @@ std::size_t AddedRays::at(glm::ivec2 pixel) const {
     return std::size_t(in.y) * std::size_t(area_.end.x - area_.begin.x) + std::size_t(in.x);
 }
 
-Tile AddedRays::pixelsOf(glm::ivec2 block) const {
-    const glm::ivec2 begin = area_.begin + block * kBlock;
-    return intersection({begin, begin + kBlock}, area_);
+Tile AddedRays::pixelsOf(const Tile& blocks) const {
+    return intersection({area_.begin + blocks.begin * kBlock, area_.begin + blocks.end * kBlock}, area_);
 }
 
 Tile AddedRays::blocksOf(const Tile& pixels) const {
@@ -164,6 +193,10 @@ void AddedRays::takeFirst(const packet::PacketPicture& picture, const Tile& tile
 bool AddedRays::choose(const Tile& tile) {
     const Tile blocks = blocksOf(tile), needed = intersection({tile.begin - 2, tile.end + 2}, area_);
     if (blocks.empty() || state(blocks.begin) != State::Open) return false;
+    if (!(seen_.bound > 0)) {
+        forEach(blocks, [&](glm::ivec2 block) { setChosen(block); });
+        return true;
+    }
     parallelFor(std::size_t(needed.end.y - needed.begin.y), [&](std::size_t row) {
         const int y = needed.begin.y + int(row);
         forEach({{needed.begin.x, y}, {needed.end.x, y + 1}},
@@ -174,24 +207,53 @@ bool AddedRays::choose(const Tile& tile) {
         forEach({{blocks.begin.x, y}, {blocks.end.x, y + 1}}, [&](glm::ivec2 block) {
             const Tile own = pixelsOf(block), wide = intersection({own.begin - 1, own.end + 1}, area_);
             const bool probed = (block.x + 5 * block.y) % kProbes == 0;
-            if (!probed && seen_.bound > 0 && isEmpty(intersection({own.begin - 2, own.end + 2}, area_))) {
+            if (!probed && isEmpty(intersection({own.begin - 2, own.end + 2}, area_))) {
                 state(block) = State::Predicted;
                 return forEach(own, [&](glm::ivec2 p) { now_[at(p)] = glm::vec4(0); });
             }
-            const bool chosen =
-                !(seen_.bound > 0) || probed || anyIn(wide, [&](glm::ivec2 pixel) { return standsOut(pixel); });
-            state(block) = chosen ? State::Chosen : State::Predicted;
-            forEach(own, [&](glm::ivec2 p) { now_[at(p)] = chosen ? first_[at(p)] : predicted(p); });
+            if (probed || anyIn(wide, [&](glm::ivec2 pixel) { return standsOut(pixel); })) return setChosen(block);
+            state(block) = State::Predicted;
+            forEach(own, [&](glm::ivec2 p) { now_[at(p)] = predicted(p); });
         });
     });
+    forEachGroup(blocks, [&](const Tile& group) { chooseDense(group); });
     return true;
+}
+
+void AddedRays::setChosen(glm::ivec2 block) {
+    state(block) = State::Chosen;
+    forEach(pixelsOf(block), [&](glm::ivec2 p) { now_[at(p)] = first_[at(p)]; });
+}
+
+/// Chooses all blocks of a group that show anything, if most of them are.
+void AddedRays::chooseDense(const Tile& group) {
+    int shows = 0, chosen = 0;
+    forEach(group, [&](glm::ivec2 block) {
+        if (isEmpty(pixelsOf(block))) return;
+        ++shows;
+        chosen += state(block) == State::Chosen ? 1 : 0;
+    });
+    if (chosen == shows || chosen <= kDense * shows) return;
+    forEach(group, [&](glm::ivec2 block) {
+        if (state(block) == State::Predicted && !isEmpty(pixelsOf(block))) setChosen(block);
+    });
+}
+
+/// Whether what is found in a block may choose others.
+bool AddedRays::besidePredicted(glm::ivec2 block) const {
+    return anyIn(intersection({block - 1, block + 2}, {{0, 0}, count_}),
+                 [&](glm::ivec2 other) { return state(other) == State::Predicted; });
 }
 
 std::vector<packet::PixelBox> AddedRays::blocks(const Tile& tile) const {
     std::vector<packet::PixelBox> out;
-    forEach(blocksOf(tile), [&](glm::ivec2 block) {
-        const Tile pixels = pixelsOf(block);
-        if (state(block) == State::Chosen) out.push_back({pixels.begin, pixels.end});
+    const auto isChosen = [&](glm::ivec2 block) { return state(block) == State::Chosen; };
+    const auto add = [&](const Tile& pixels) { out.push_back({pixels.begin, pixels.end}); };
+    forEachGroup(blocksOf(tile), [&](const Tile& group) {
+        if (!anyIn(group, [&](glm::ivec2 block) { return !isChosen(block); })) return add(pixelsOf(group));
+        forEach(group, [&](glm::ivec2 block) {
+            if (isChosen(block)) add(pixelsOf(block));
+        });
     });
     return out;
 }
@@ -209,7 +271,7 @@ bool AddedRays::chooseMore() {
     forEach({{0, 0}, count_}, [&](glm::ivec2 block) {
         if (state(block) != State::Chosen) return;
         state(block) = State::Done;
-        if (!(seen_.bound > 0)) return;
+        if (!(seen_.bound > 0) || !besidePredicted(block)) return;
         forEach(pixelsOf(block), [&](glm::ivec2 pixel) {
             if (greatest(shown(now_[at(pixel)]) - shown(predicted(pixel))) > seen_.bound) differ.push_back(pixel);
         });
@@ -218,9 +280,8 @@ bool AddedRays::chooseMore() {
     for (const glm::ivec2& pixel : differ)
         forEach(blocksOf({pixel - kFollowed, pixel + kFollowed + 1}), [&](glm::ivec2 block) {
             if (state(block) != State::Predicted) return;
-            state(block) = State::Chosen;
+            setChosen(block);
             any = true;
-            forEach(pixelsOf(block), [&](glm::ivec2 p) { now_[at(p)] = first_[at(p)]; });
         });
     return any;
 }

@@ -19,12 +19,16 @@
 /// line of blocks meets. Where the mean of all rays then differs from the predicted one by more than that, the blocks
 /// around get theirs too, and so on: thin lines are followed from any place where a ray has met them. Differences are
 /// those of the colours that a screen shows, over the ground.
+///
+/// Where choosing cannot gain, all rays are cast: in a group of 8x8 blocks most of whose blocks that show anything are
+/// chosen, in all that do; and everywhere with depth of field, and where all that is drawn is strokes and grain.
 namespace tessera::vis {
 
 class AddedRays {
 public:
     static constexpr float kAlike = 0.02f; ///< of the brightness of the screen
     static constexpr int kBlock = 4;       ///< pixels along the edge of a block; blocks begin with the area
+    static constexpr int kGroup = 32;      ///< along that of a group of blocks; groups begin with the area
 
     /// Begins an area of a picture of `size` pixels, without any rays.
     void begin(const Scene& scene, glm::ivec2 size, const Tile& area);
@@ -33,9 +37,9 @@ public:
     /// Takes the first rays of a tile of the area; where `picture` has no pixels they meet nothing.
     void takeFirst(const packet::PacketPicture& picture, const Tile& tile);
     /// Chooses blocks of a tile by the first rays of all pixels, and predicts the colours of the others; false if that
-    /// was done. The edges of a tile, here and below, are those of blocks, or of the area.
+    /// was done. The edges of a tile, here and below, are those of groups, or of the area.
     bool choose(const Tile& tile);
-    /// The chosen blocks of a tile that lack rays.
+    /// The chosen blocks of a tile that lack rays; those of a whole group as one box.
     std::vector<packet::PixelBox> blocks(const Tile& tile) const;
     /// Takes ray `pass` > 0 of the pixels of these blocks.
     void take(const packet::PacketPicture& picture, const Tile& tile, int pass);
@@ -57,7 +61,8 @@ private:
     };
 
     std::size_t at(glm::ivec2 pixel) const;
-    Tile pixelsOf(glm::ivec2 block) const;
+    Tile pixelsOf(const Tile& blocks) const;
+    Tile pixelsOf(glm::ivec2 block) const { return pixelsOf(Tile{block, block + 1}); }
     Tile blocksOf(const Tile& pixels) const;
     State& state(glm::ivec2 block);
     State state(glm::ivec2 block) const;
@@ -68,6 +73,9 @@ private:
     glm::vec4 around(const std::vector<glm::vec4>& of, glm::ivec2 pixel) const;
     glm::vec4 predicted(glm::ivec2 pixel) const;
     bool standsOut(glm::ivec2 pixel) const;
+    void setChosen(glm::ivec2 block);
+    void chooseDense(const Tile& group);
+    bool besidePredicted(glm::ivec2 block) const;
 
     glm::ivec2 size_{0};
     Tile area_;

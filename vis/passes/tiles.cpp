@@ -163,8 +163,8 @@ void drawTile(RendererState& shared, ViewTarget& target, const RenderCall& call,
 }
 
 /// Whether packets, after all passes, have chosen pixels for further rays, whose passes follow.
-bool morePasses(ViewTarget& target, const RayPrograms& programs, int perPass) {
-    if (!programs.packets || !target.packets.added.chooseMore()) return false;
+bool morePasses(ViewTarget& target, int perPass) {
+    if (!target.packets.added.chooseMore()) return false;
     target.state.repeatAfter(perPass);
     return true;
 }
@@ -181,6 +181,7 @@ void drawTiles(RendererState& shared, ViewTarget& target, const RenderCall& call
         target.redraw(state.stale()); // something else has cast the first rays
     if (state.tilesDone() == 0) {
         target.pace().beginPass(request.wait, request.budgetMs);
+        added = {}; // of a picture that was not refined
         if (adds) added.begin(call.scene, target.buffers.size, state.stale());
     }
     const std::vector<Tile> tiles =
@@ -189,7 +190,7 @@ void drawTiles(RendererState& shared, ViewTarget& target, const RenderCall& call
             : tilesFromMiddle(state.stale(), target.pace().tileEdge());
     setUniforms(programs, target, call, 1);
     const int perPass = int(tiles.size()), wanted = perPass * raysPerPixel(call.scene);
-    for (bool first = true; state.tilesDone() < wanted || morePasses(target, programs, perPass); first = false) {
+    for (bool first = true; state.tilesDone() < wanted || (adds && morePasses(target, perPass)); first = false) {
         const Tile& tile = tiles[std::size_t(state.tilesDone() % perPass)];
         const double left = request.budgetMs - millisecondsSince(start);
         if (!request.wait && !first && !target.pace().fits(tile.area(), left)) break;

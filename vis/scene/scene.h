@@ -49,7 +49,7 @@ struct RenderParams {
     volume::GradientSpan gradient = volume::GradientSpan::Neighbours;
     int normalBits = 0;     ///< quantisation of gradient directions per coordinate, 0: none
     bool jitter = false;    ///< vis/optics/jitter.h
-    int samples = 4;        ///< rays per pixel of a picture at rest
+    int samples = 4;        ///< rays per pixel of a picture at rest, at most
     bool cullHidden = true; ///< occlusion culling: vis/demand/hidden_bricks.h
     float adaptiveStep = 0; ///< vis/optics/adaptive_step.h
 
@@ -119,7 +119,8 @@ struct RenderParams {
                         .doc = "Shift the samples of each ray at random: fine noise instead of wood-grain artefacts",
                         .group = kSteps});
         visit(self.samples, FieldInfo{.key = "samples",
-                                      .doc = "Rays per pixel when the picture is at rest; with depth of field 64",
+                                      .doc = "Rays per pixel when the picture is at rest, at most: fewer where the "
+                                             "processor casts them and neighbours are alike; with depth of field 64",
                                       .range = Range{1, 64}});
         visit(self.cullHidden, FieldInfo{.key = "cullHidden",
                                          .doc = "Keep bricks behind opaque ones coarse until they become visible",
