@@ -28,21 +28,23 @@ void exportSurface(const Document& document, std::string path, Jobs& jobs, Messa
     const int chosen = chosenSurface(document.session());
     if (chosen < 0 || !document.loaded()) return;
     if (!std::filesystem::path(path).has_extension()) path += ".ply";
-    const vis::IsoLayer layer = std::get<vis::IsoLayer>(session.layers[std::size_t(chosen)].technique);
-    const volume::TimePair time = volume::timesAround(document.info().times, session.time);
-    jobs.start(
-        "export surface", "Writing " + std::filesystem::path(path).filename().string(),
-        [&messages, source = document.sources().numbers, layer, time, path](const Progress& progress) -> Jobs::Finish {
-            const auto geometry = extractLayer(source, layer, time, 0, progress.part(0, 0.7));
-            if (!geometry) throw Error("there is no parameter \"" + layer.channel + "\"");
-            volume::writeMesh(geometry->mesh, path, layer.colorBy, progress.part(0.7, 1));
-            const std::size_t triangles = geometry->mesh.triangles.size();
-            const std::string shift = volume::meshShift(geometry->mesh, path);
-            return [&messages, path, triangles, shift] {
-                messages.add("Wrote " + std::to_string(triangles) + " triangles to " + path +
-                             (shift.empty() ? "" : ": " + shift));
-            };
-        });
+    const vis::Layer& whole = session.layers[std::size_t(chosen)];
+    const vis::IsoLayer layer = std::get<vis::IsoLayer>(whole.technique);
+    const volume::TimePair time = volume::timesAround(document.info().times, session.time + whole.timeShift);
+    jobs.start("export surface", "Writing " + std::filesystem::path(path).filename().string(),
+               [&messages, source = document.sources().numbers, space = document.sources().origin.spaceOfPlane, layer,
+                time, path](const Progress& progress) -> Jobs::Finish {
+                   const auto geometry = extractLayer(source, layer, time, 0, progress.part(0, 0.7), space);
+                   if (!geometry) throw Error("there is no parameter \"" + layer.channel + "\"");
+                   volume::writeMesh(geometry->mesh, path, layer.colorBy, progress.part(0.7, 1));
+                   const std::size_t triangles = geometry->mesh.triangles.size();
+                   std::string more = volume::meshShift(geometry->mesh, path);
+                   for (const std::string& note : geometry->notes) more += (more.empty() ? "" : "; ") + note;
+                   return [&messages, path, triangles, more] {
+                       messages.add("Wrote " + std::to_string(triangles) + " triangles to " + path +
+                                    (more.empty() ? "" : ": " + more));
+                   };
+               });
 }
 
 } // namespace tessera::app

@@ -45,16 +45,10 @@ std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const volum
 }
 
 /// The same of data that may be a plane in space and time, whose surfaces are cut from those of the data it is of.
-std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const Session& session,
-                                         const volume::DatasetInfo& info, const SharedSource& space) {
-    std::optional<SurfaceQuery> query = surfaceQuery(layer, info, volume::timesAround(info.times, session.time));
+std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const volume::DatasetInfo& info,
+                                         const volume::TimePair& time, const SharedSource& space) {
+    std::optional<SurfaceQuery> query = surfaceQuery(layer, info, time);
     if (!query) return query;
-    if (!layer.strokes.vector.empty() && !info.timeAxis()) { // times and lengths have no direction
-        query->strokes = layer.strokes;
-        query->strokes.strength = 1; // how they are drawn
-        query->strokes.grey = false;
-        query->stretch = session.stretch;
-    }
     if (layer.method != vis::SurfaceMethod::SpaceTime || !info.plane || !space) return query;
     const std::optional<int> channel = space->info().findChannel(layer.channel);
     if (!channel || volume::parameterOf(space->info(), *channel).categorical) return query;
@@ -64,8 +58,22 @@ std::optional<SurfaceQuery> surfaceQuery(const vis::IsoLayer& layer, const Sessi
     return query;
 }
 
-FlowQuery flowQuery(const vis::FlowLayer& layer, const Session& session, const volume::DatasetInfo& info) {
-    FlowQuery query{layer, volume::timesAround(info.times, session.time), session.stretch};
+/// As above, with strokes.
+std::optional<SurfaceQuery> drawnSurfaceQuery(const vis::IsoLayer& layer, const Session& session,
+                                              const volume::DatasetInfo& info, const volume::TimePair& time,
+                                              const SharedSource& space) {
+    std::optional<SurfaceQuery> query = surfaceQuery(layer, info, time, space);
+    if (!query || layer.strokes.vector.empty() || info.timeAxis()) return query; // lengths and times have no direction
+    query->strokes = layer.strokes;
+    query->strokes.strength = 1; // how they are drawn
+    query->strokes.grey = false;
+    query->stretch = session.stretch;
+    return query;
+}
+
+FlowQuery flowQuery(const vis::FlowLayer& layer, const Session& session, const volume::DatasetInfo& info,
+                    const volume::TimePair& time) {
+    FlowQuery query{layer, time, session.stretch};
     // Paths cover all times; the time shown only decides which particles start.
     if (layer.kind == vis::FlowKind::Pathlines) query.time = {query.time.nearest(), query.time.nearest(), 0};
     query.layer.style = {}; // does not change the geometry
@@ -78,8 +86,8 @@ FlowQuery flowQuery(const vis::FlowLayer& layer, const Session& session, const v
 }
 
 GlyphQuery glyphQuery(const vis::GlyphLayer& glyphs, vis::BrushEffect effect, const Session& session,
-                      const volume::DatasetInfo& info) {
-    GlyphQuery query{glyphs, volume::timesAround(info.times, session.time), session.stretch};
+                      const volume::DatasetInfo& info, const volume::TimePair& time) {
+    GlyphQuery query{glyphs, time, session.stretch};
     query.layer.style = {}; // does not change the geometry
     if (glyphs.place == vis::GlyphPlace::Cursor) query.cursor = session.cursor;
     if ((glyphs.seedBrushed || effect != vis::BrushEffect::None) && session.selection.active()) {
@@ -93,15 +101,16 @@ GlyphQuery glyphQuery(const vis::GlyphLayer& glyphs, vis::BrushEffect effect, co
 std::optional<GeometryQuery> queryOf(const vis::Layer& layer, const Session& session, const volume::DatasetInfo& info,
                                      const SharedSource& space) {
     const vis::Technique& technique = layer.technique;
+    const volume::TimePair time = volume::timesAround(info.times, session.time + layer.timeShift);
     if (const auto* flow = std::get_if<vis::FlowLayer>(&technique)) {
         if (info.timeAxis()) return std::nullopt; // vectors have no direction between lengths and times
-        return flowQuery(*flow, session, info);
+        return flowQuery(*flow, session, info, time);
     }
     if (const auto* glyphs = std::get_if<vis::GlyphLayer>(&technique))
-        return glyphQuery(*glyphs, layer.brushes, session, info);
+        return glyphQuery(*glyphs, layer.brushes, session, info, time);
     const auto* iso = std::get_if<vis::IsoLayer>(&technique);
     if (!iso || !iso->meshed()) return std::nullopt;
-    return surfaceQuery(*iso, session, info, space);
+    return drawnSurfaceQuery(*iso, session, info, time, space);
 }
 
 /// The level of detail that a surface in space and time is made of where that of `level` is wanted.
@@ -137,6 +146,8 @@ std::shared_ptr<vis::Geometry> make(const SurfaceQuery& query, const SharedSourc
     auto geometry = std::make_shared<vis::Geometry>();
     const double share = query.colorBy < 0 ? 1 : 0.6;
     geometry->mesh = meshOf(query, source, in, inTime, level, progress.part(0, share));
+    if (const int finest = query.spaceTime ? levelInTime(query, *source, 0) : 0; finest > 0)
+        geometry->notes.push_back(vis::coarserText("surface in space and time", finest));
     if (query.colorBy < 0) return geometry;
     const volume::SourceAtTime shown =
         volume::sourceAt(in == Surroundings::Sheet ? volume::sheetSource(source) : source, query.time);
@@ -147,15 +158,14 @@ std::shared_ptr<vis::Geometry> make(const SurfaceQuery& query, const SharedSourc
 /// The same as it is drawn. `level`: set to the finest where that surface in space and time is there already.
 SharedGeometry makeDrawn(const SurfaceQuery& query, const SharedSource& source, volume::SpaceTimeSurfaces& inTime,
                          int& level, const Progress& progress) {
-    const int finest = query.spaceTime ? levelInTime(query, *source, 0) : 0;
-    if (query.spaceTime && !query.space && inTime.keeps(source, query.channel, query.value, query.time, finest))
-        level = 0;
     const bool strokes = !query.strokes.vector.empty();
+    if (query.spaceTime && !query.space && !strokes &&
+        inTime.keeps(source, query.channel, query.value, query.time, levelInTime(query, *source, 0)))
+        level = 0;
     // Where strokes are what takes long they alone are coarse at first.
     const bool small = source->grid().levelWithin(kCoarseSamples) == 0;
     auto geometry = make(query, source, Surroundings::Sheet, inTime, strokes && small ? 0 : level,
                          progress.part(0, strokes ? 0.3 : 1));
-    if (finest > 0) geometry->notes.push_back(vis::coarserText("surface in space and time", finest));
     if (strokes) {
         const volume::SourceAtTime shown = volume::sourceAt(source, query.time);
         const volume::BrickCache cache(shown.source, kStrokeBricks);
@@ -192,14 +202,14 @@ vis::GeometryLayer drawnAs(const vis::Layer& layer, const GeometryQuery& made) {
     drawn.transfer = layer.transfer;
     drawn.brushes = layer.brushes;
     if (const auto* iso = std::get_if<vis::IsoLayer>(&layer.technique)) {
-        const bool grey = iso->strokes.grey && !iso->strokes.vector.empty();
+        const auto* surface = std::get_if<SurfaceQuery>(&made);
+        const bool grey = iso->strokes.grey && surface && !surface->strokes.vector.empty();
         drawn.style = {.color = grey ? kStrokesGround : iso->color,
                        .opacity = iso->opacity,
                        .strokes = iso->strokes.strength,
                        .cutByBox = true,
                        .look = iso->look};
-        if (const auto* surface = std::get_if<SurfaceQuery>(&made); surface && surface->colorBy >= 0 && !grey)
-            drawn.channel = iso->colorBy;
+        if (surface && surface->colorBy >= 0 && !grey) drawn.channel = iso->colorBy;
     }
     if (const auto* flow = std::get_if<vis::FlowLayer>(&layer.technique)) {
         drawn.style = flow->style;
@@ -230,8 +240,9 @@ AsyncOptions optionsFor(const vis::Layer& layer, const std::string& place, const
 
 std::shared_ptr<const vis::Geometry> extractLayer(const std::shared_ptr<const volume::BrickSource>& source,
                                                   const vis::IsoLayer& layer, const volume::TimePair& time, int level,
-                                                  const Progress& progress) {
-    const std::optional<SurfaceQuery> query = surfaceQuery(layer, source->info(), time);
+                                                  const Progress& progress,
+                                                  const std::shared_ptr<const volume::BrickSource>& space) {
+    const std::optional<SurfaceQuery> query = surfaceQuery(layer, source->info(), time, space);
     volume::SpaceTimeSurfaces inTime;
     return query ? make(*query, source, Surroundings::Space, inTime, level, progress) : nullptr;
 }

@@ -67,9 +67,11 @@ private:
 };
 
 /// The surface of an iso-layer at a level of detail, with the values of its colouring parameter at the vertices.
-/// Nothing where the data has no such parameter. Throws Error, Cancelled.
+/// Nothing where the data has no such parameter. `space`: what a plane in space and time is cut from, if it is one.
+/// Throws Error, Cancelled.
 std::shared_ptr<const vis::Geometry> extractLayer(const std::shared_ptr<const volume::BrickSource>& source,
                                                   const vis::IsoLayer& layer, const volume::TimePair& time, int level,
-                                                  const Progress& progress);
+                                                  const Progress& progress,
+                                                  const std::shared_ptr<const volume::BrickSource>& space = {});
 
 } // namespace tessera::app

@@ -438,9 +438,11 @@ double volumeWithin(const volume::SurfaceMesh& mesh) {
 struct SpaceTimeLayers : AsyncQueries {
     AsyncGeometry answers;
     vis::IsoLayer layer{.channel = "f", .value = 0, .method = vis::SurfaceMethod::SpaceTime};
+    double timeShift = 0;
     /// The geometry of the layer, made to the end.
     std::vector<vis::GeometryLayer> drawn(std::shared_ptr<const volume::BrickSource> space = {}) {
         session.layers = {{"surface", true, layer}};
+        session.layers[0].timeShift = timeShift;
         ViewContext now = context();
         now.headless = true;
         now.origin.spaceOfPlane = std::move(space);
@@ -486,11 +488,44 @@ TEST_F(SpaceTimeLayers, InAPlaneAreCutsOfTheDataThatItIsOf) {
         double most = 0;
         for (const glm::vec3& position : mesh.positions) most = std::max(most, double(position.x));
         EXPECT_NEAR(most, 0.8, 0.01);
+        const auto time = volume::timesAround(source->info().times, session.time);
+        const auto written = extractLayer(source, layer, time, 0, {}, space);
+        EXPECT_EQ(written->mesh.triangles, mesh.triangles) << "what is exported";
+        for (const glm::vec3& position : written->mesh.positions)
+            EXPECT_NEAR(glm::length(plane.pointAt(written->mesh.origin + glm::dvec3(position))), 0.8, 0.01);
         layer.method = vis::SurfaceMethod::Polygons;
         EXPECT_NE(drawn(space).at(0).geometry->mesh, mesh);
         layer.method = vis::SurfaceMethod::SpaceTime;
         EXPECT_FALSE(drawn().empty()) << "without the data: of the samples of the plane";
     }
+}
+
+// A layer with a time offset is of the time that its legend states, however it is made.
+TEST_F(SpaceTimeLayers, AreOfTheTimeOfTheirLayer) {
+    show(hypersphere());
+    for (const vis::SurfaceMethod method : {vis::SurfaceMethod::Polygons, vis::SurfaceMethod::SpaceTime}) {
+        layer.method = method;
+        session.time = 0.35;
+        timeShift = 0;
+        const volume::SurfaceMesh later = drawn().at(0).geometry->mesh;
+        session.time = 0.1;
+        EXPECT_NE(drawn().at(0).geometry->mesh, later);
+        timeShift = 0.25;
+        EXPECT_NEAR(volumeWithin(drawn().at(0).geometry->mesh), volumeWithin(later), 1e-3);
+    }
+}
+
+// Where strokes have no meaning a surface keeps its colours.
+TEST_F(SpaceTimeLayers, AlongATimeAxisSurfacesHaveNeitherStrokesNorGrey) {
+    const auto space = hypersphere();
+    layer.strokes = {.vector = "U", .width = 0.03f, .grey = true};
+    layer.colorBy = "f";
+    show(volume::makePlaneSource(space, {.degrees = 90}));
+    const auto surfaces = drawn(space);
+    ASSERT_EQ(surfaces.size(), 1u);
+    EXPECT_TRUE(surfaces[0].geometry->strokes.empty());
+    EXPECT_EQ(surfaces[0].channel, "f");
+    EXPECT_EQ(surfaces[0].style.color, layer.color);
 }
 
 TEST_F(SpaceTimeLayers, SurfacesWithStrokesAreMeshes) {

@@ -219,6 +219,23 @@ TEST_F(TesseractViews, ALassoAtAnyTurnSelectsTheSamplesInIt) {
     EXPECT_EQ(session.data.derived.size(), 4u);
 }
 
+// A formula means a parameter of the name of a coordinate: then it cannot be of the coordinate.
+TEST_F(TesseractViews, CoordinatesOfThePictureAreNotParametersOfTheirNames) {
+    show(evenCell());
+    tesseractView.turn = {25, -35, 50};
+    tesseractView.turn4 = {20, -30, 40};
+    const TesseractFrame seen = frameOfView();
+    volume::DatasetInfo info = source->info();
+    EXPECT_FALSE(turnedFormulas(info, seen)[0].empty());
+    info.parameters.push_back(info.parameters[0]);
+    for (const char* name : {"x", "t"}) {
+        info.parameters.back().name = name;
+        EXPECT_TRUE(turnedFormulas(info, seen)[0].empty()) << name;
+    }
+    info.parameters.back().name = "w";
+    EXPECT_FALSE(turnedFormulas(info, seen)[0].empty());
+}
+
 TEST_F(TesseractViews, SaysWhyNoBrushCanBeDrawnAndTurnsThere) {
     show(fuelCell(volume::LatticeKind::CC));
     tesseractView.hand = TesseractHand::Box;

@@ -5,9 +5,11 @@
 #include "app/views/data/derived_list.h"
 #include "app/views/tesseract/tesseract_turn.h"
 #include "volume/base/number_text.h"
+#include "volume/derived/derived_names.h"
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <variant>
 
 namespace tessera::app {
@@ -40,6 +42,14 @@ std::optional<vis::RotationN> turnForBrush(const TesseractFrame& frame) {
         if (frame.axes[std::size_t(axis)].even) even.push_back(axis);
     if (even.size() < 2) return std::nullopt;
     return vis::nearestFaced(frame.rotation, frame.count, even);
+}
+
+/// Whether a formula takes x, y, z or t as that coordinate, not as a parameter of the same name.
+bool meansCoordinate(const volume::FormulaNames& names, std::string_view name) {
+    bool coordinate = false;
+    for (std::size_t i = 0; i < names.names.size(); ++i) // of equal names the later one is used
+        if (names.names[i] == name) coordinate = names.channel[i] < 0;
+    return coordinate;
 }
 
 std::string brushTitle(const TesseractFrame& frame, std::array<int, 2> faced) {
@@ -80,6 +90,7 @@ void addBrushedChannels(Session& session, const volume::DatasetInfo& info, const
 std::array<std::string, 2> turnedFormulas(const volume::DatasetInfo& info, const TesseractFrame& frame) {
     constexpr const char* kPlaces[] = {"x", "y", "z", "t"};
     constexpr double kLeastPart = 1e-9;
+    const volume::FormulaNames names(info);
     std::array<std::string, 2> formulas;
     for (int row = 0; row < 2; ++row) {
         std::string text;
@@ -89,7 +100,7 @@ std::array<std::string, 2> turnedFormulas(const volume::DatasetInfo& info, const
             const double part = frame.rotation.at(row, axis) * frame.half[std::size_t(axis)];
             const double extent = own.range.hi - own.range.lo;
             if (std::abs(part) < kLeastPart || !(extent > 0)) continue;
-            if (!own.even) return {};
+            if (!own.even || (!own.channel && !meansCoordinate(names, kPlaces[axis]))) return {};
             const std::string name = own.channel ? "`" + info.channel(*own.channel).name + "`" : kPlaces[axis];
             text += exactText(2 * part / extent) + " * " + name + " + ";
             constant -= part * (own.range.lo + own.range.hi) / extent;

@@ -27,7 +27,8 @@ void addBrushedChannels(Session& session, const volume::DatasetInfo& info, const
                         std::array<int, 2> faced);
 
 /// The coordinates of the picture, to the right and upwards, in parallel projection: formulas of the axes, each -1..1
-/// within the unit ball. Empty where an axis that has a part in them is not to scale.
+/// within the unit ball. Empty where an axis that has a part in them is not to scale, or where a parameter has the name
+/// of one, x, y, z or t: formulas mean the parameter then.
 std::array<std::string, 2> turnedFormulas(const volume::DatasetInfo& info, const TesseractFrame& frame);
 /// The parameters of the session that are computed so; "" for what it lacks.
 std::array<std::string, 2> turnedChannels(const Session& session, const volume::DatasetInfo& info,

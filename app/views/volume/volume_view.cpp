@@ -101,6 +101,7 @@ private:
     /// A picture and what is drawn over it, as a camera sees it.
     void drawOver(vis::TextureName texture, const vis::Camera& camera, const vis::FrameStatus& status, bool moving) {
         list_->PushClipRect(picture_.min, max(), true);
+        upperLines_ = 0;
         addPicture(*list_, texture, picture_.min, max());
         const SpaceFrame space = spaceFrame(picture_.min, max(), camera, info_, session_.stretch);
         drawObjects(space);
@@ -262,6 +263,7 @@ private:
     }
     void drawTexts() {
         const UpperTexts texts = upperTexts();
+        upperLines_ = texts.left.size();
         const auto write = [&](ImVec2 at, float pivot, ImU32 color, const std::string& text) {
             if (text.empty()) return;
             const ImVec2 size = ImGui::CalcTextSize(text.c_str());
@@ -290,8 +292,9 @@ private:
                               {0.5f, 0.5f}, plotColors().text, text, picture_.size.x - em());
     }
 
+    /// Below the other texts there.
     void drawUpperLeft(const std::string& text, ImU32 color) {
-        const ImVec2 at{picture_.min.x + em() * 0.5f, picture_.min.y + em() * 0.4f},
+        const ImVec2 at{picture_.min.x + em() * 0.5f, picture_.min.y + em() * (0.4f + kUpperLine * float(upperLines_))},
             size = ImGui::CalcTextSize(text.c_str());
         addTextWithBackdrop(*list_, at, {0, 0}, color, text.c_str());
         taken_.push_back({at, {at.x + size.x, at.y + size.y}});
@@ -313,6 +316,7 @@ private:
     CalloutsBeside callouts_;
     const vis::Scene* scene_ = nullptr; ///< of this frame
     ImDrawList* list_ = nullptr;
+    std::size_t upperLines_ = 0;                   ///< of texts in the upper left corner
     std::optional<float> legendLeft_;              ///< of a legend at the bottom, pixels
     std::vector<std::pair<ImVec2, ImVec2>> taken_; ///< corners of what is drawn already, which labels keep clear of
 };
