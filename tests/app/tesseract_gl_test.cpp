@@ -207,7 +207,7 @@ TEST_F(TesseractViews, ALassoAtAnyTurnSelectsTheSamplesInIt) {
     };
     EXPECT_GT(expectSelected(inside, atRim), 50u);
     // Turned on, the brush stays what it is, and another needs other coordinates.
-    tesseractView.turn4 = {20, -30, 60};
+    tesseractView.turn4 = {60, -30, 40};
     drag({{200, 150}, {300, 300}, {200, 300}});
     EXPECT_FALSE(taken);
     EXPECT_EQ(session.selection.brushes.size(), 1u);
