@@ -172,6 +172,10 @@ using Spread = raw::Spread;
 [[gnu::always_inline]] inline Spread spread(Ints index, Mask m) {
     return raw::spread(index.v, m.v);
 }
+/// The same of loadQuads().
+[[gnu::always_inline]] inline Spread spreadQuads(Ints index, Mask m) {
+    return raw::spreadQuads(index.v, m.v);
+}
 /// As gatherPairs(), for large data: faster where the first cache misses often, slower where it does not. Lanes that
 /// are not asked for may be anything.
 template <int Scale> [[gnu::always_inline]] inline IntPair loadPairs(const void* base, const Spread& index, Mask m) {

@@ -87,14 +87,17 @@ struct Spread {
     I index;
     alignas(64) std::int32_t at[kLanes]; ///< the same in memory, for loads of single lanes
 };
-[[gnu::always_inline]] inline void storeLanes(Spread& out, M m) {
-    _mm512_store_si512(out.at, _mm512_maskz_mov_epi32(m, __m512i(out.index)));
-    asm volatile("" : "+m"(out.at)); // else the compiler takes the lanes out of the register, by two operations each
-}
-[[gnu::always_inline]] inline Spread spread(I index, M m) {
+[[gnu::always_inline]] inline Spread spreadQuads(I index, M m) {
     Spread out;
     out.index = index;
-    if (!kGathersFast) storeLanes(out, m);
+    _mm512_store_si512(out.at, _mm512_maskz_mov_epi32(m, __m512i(index)));
+    asm volatile("" : "+m"(out.at)); // else the compiler takes the lanes out of the register, by two operations each
+    return out;
+}
+[[gnu::always_inline]] inline Spread spread(I index, M m) {
+    if (!kGathersFast) return spreadQuads(index, m);
+    Spread out;
+    out.index = index;
     return out;
 }
 template <int Scale>
@@ -118,10 +121,7 @@ template <int Scale>
     low = I(_mm512_shuffle_ps(a, b, 0x88));
     high = I(_mm512_shuffle_ps(a, b, 0xdd));
 }
-template <int Scale>
-[[gnu::always_inline]] inline void loadQuads(const void* base, const Spread& spread, M m, I* each) {
-    Spread index = spread;
-    if (kGathersFast) storeLanes(index, m);
+template <int Scale> [[gnu::always_inline]] inline void loadQuads(const void* base, const Spread& index, M, I* each) {
     const auto four = [&](int i) __attribute__((always_inline)) { // of lanes i, i + 4, i + 8, i + 12
         const auto one = [&](int lane) __attribute__((always_inline)) {
             const char* place = static_cast<const char*>(base) + std::ptrdiff_t(index.at[lane]) * Scale;

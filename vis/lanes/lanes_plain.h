@@ -93,6 +93,9 @@ using Spread = I;
 [[gnu::always_inline]] inline Spread spread(I index, M) {
     return index;
 }
+[[gnu::always_inline]] inline Spread spreadQuads(I index, M) {
+    return index;
+}
 template <int Scale>
 [[gnu::always_inline]] inline void loadPairs(const void* base, Spread index, M m, I& low, I& high) {
     gatherPairs<Scale>(base, index, m, low, high);
