@@ -169,12 +169,10 @@ template <int Scale> [[gnu::always_inline]] inline IntPair gatherPairs(const voi
 }
 /// Indices of loadPairs(), which are best made long before it; they may be anything in lanes that are not asked for.
 using Spread = raw::Spread;
-[[gnu::always_inline]] inline Spread spread(Ints index, Mask m) {
-    return raw::spread(index.v, m.v);
-}
-/// The same of loadQuads().
-[[gnu::always_inline]] inline Spread spreadQuads(Ints index, Mask m) {
-    return raw::spreadQuads(index.v, m.v);
+/// `many`: of several reads that do not wait for each other, so that it matters less how long one of them takes; not of
+/// loadQuads().
+[[gnu::always_inline]] inline Spread spread(Ints index, Mask m, bool many = false) {
+    return raw::spread(index.v, m.v, many);
 }
 /// As gatherPairs(), for large data: faster where the first cache misses often, slower where it does not. Lanes that
 /// are not asked for may be anything.

@@ -83,10 +83,7 @@ template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* 
     high = inOrder(_mm256_shuffle_ps(a, b, 0xdd));
 }
 using Spread = I;
-[[gnu::always_inline]] inline Spread spread(I index, M) {
-    return index;
-}
-[[gnu::always_inline]] inline Spread spreadQuads(I index, M) {
+[[gnu::always_inline]] inline Spread spread(I index, M, bool) {
     return index;
 }
 template <int Scale>

@@ -77,32 +77,29 @@ template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* 
     low = I(_mm512_permutex2var_epi32(a, even, b));
     high = I(_mm512_permutex2var_epi32(a, _mm512_or_si512(even, _mm512_set1_epi32(1)), b));
 }
-/// Whether gather instructions are the fastest way: on Intel's processors they take 0.8 of the time of loads of single
-/// lanes, on Zen 4 1.6 times as long where the first cache misses.
+/// Whether gather instructions are the fastest way for many reads: on Intel's processors they take 0.8 of the time of
+/// loads of single lanes, but longer until the first is done; on Zen 4 1.6 times as long where the first cache misses.
 inline const bool kGathersFast = [] {
     __builtin_cpu_init();
     return __builtin_cpu_is("intel") != 0;
 }();
 struct Spread {
     I index;
-    alignas(64) std::int32_t at[kLanes]; ///< the same in memory, for loads of single lanes
+    bool gathered;
+    alignas(64) std::int32_t at[kLanes]; ///< the same in memory, for loads of single lanes, if not `gathered`
 };
-[[gnu::always_inline]] inline Spread spreadQuads(I index, M m) {
+[[gnu::always_inline]] inline Spread spread(I index, M m, bool many) {
     Spread out;
     out.index = index;
+    out.gathered = many && kGathersFast;
+    if (out.gathered) return out;
     _mm512_store_si512(out.at, _mm512_maskz_mov_epi32(m, __m512i(index)));
     asm volatile("" : "+m"(out.at)); // else the compiler takes the lanes out of the register, by two operations each
     return out;
 }
-[[gnu::always_inline]] inline Spread spread(I index, M m) {
-    if (!kGathersFast) return spreadQuads(index, m);
-    Spread out;
-    out.index = index;
-    return out;
-}
 template <int Scale>
 [[gnu::always_inline]] inline void loadPairs(const void* base, const Spread& index, M m, I& low, I& high) {
-    if (kGathersFast) return gatherPairs<Scale>(base, index.index, m, low, high);
+    if (index.gathered) return gatherPairs<Scale>(base, index.index, m, low, high);
     const std::int32_t* at = index.at;
     const auto place = [&](int i) __attribute__((always_inline)) {
         return static_cast<const char*>(base) + std::ptrdiff_t(at[i]) * Scale;

@@ -22,7 +22,7 @@ struct SegmentEnd {
 };
 /// Lanes that are not asked for may be anything.
 [[gnu::always_inline]] inline SegmentEnd segmentEnd(const LayerView& layer, Ints place, Mask lanes) {
-    return {place, loadQuads<16>(layer.integrals.sums, spreadQuads(place, lanes), lanes)};
+    return {place, loadQuads<16>(layer.integrals.sums, spread(place, lanes), lanes)};
 }
 /// Of samples.
 [[gnu::always_inline]] inline SegmentEnd segmentEnd(const LayerView& layer, Floats value, Mask lanes) {

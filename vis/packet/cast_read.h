@@ -61,8 +61,10 @@ inline Ints pairWeights(Floats f) {
            (at.y >> 20) * Ints(volume.perBrick.y) + (at.z >> 20) * Ints(volume.perBrick.z);
 }
 
-[[gnu::always_inline]] inline Corner cornerAt(const VolumeView& volume, const Fixed& at, Mask lanes) {
-    return {spread(pairAt(volume, at), lanes), lowHalves(at.x), lowHalves(at.y) ^ Ints(kQuantum), lowHalves(at.z)};
+[[gnu::always_inline]] inline Corner cornerAt(const VolumeView& volume, const Fixed& at, Mask lanes,
+                                              bool many = false) {
+    return {spread(pairAt(volume, at), lanes, many), lowHalves(at.x), lowHalves(at.y) ^ Ints(kQuantum),
+            lowHalves(at.z)};
 }
 
 /// The interpolated 15-bit samples, times kQuantum.
@@ -127,7 +129,7 @@ template <bool Bcc, bool Exact> struct Reader {
         }
         Around places[Count];
         for (int i = 0; i < Count; ++i) {
-            places[i] = around(at, lanes[i]);
+            places[i] = around(at, lanes[i], Count > 2);
             at += way;
         }
         for (int i = 0; i < Count; ++i) found[i] = valueOf(places[i], lanes[i]);
@@ -139,7 +141,7 @@ template <bool Bcc, bool Exact> struct Reader {
             return;
         }
         Around places[Count];
-        for (int i = 0; i < Count; ++i) places[i] = around(at[i], lanes[i]);
+        for (int i = 0; i < Count; ++i) places[i] = around(at[i], lanes[i], Count > 2);
         for (int i = 0; i < Count; ++i) found[i] = valueOf(places[i], lanes[i]);
     }
     /// The value as far as samples have any weight, see reference::Samples::continued; present where they have.
@@ -268,10 +270,10 @@ private:
     struct Around {
         Corner grids[Bcc ? 2 : 1];
     };
-    [[gnu::always_inline]] Around around(const Fixed& at, Mask lanes) const {
+    [[gnu::always_inline]] Around around(const Fixed& at, Mask lanes, bool many = false) const {
         Around out;
-        out.grids[0] = cornerAt(volume, at, lanes);
-        if constexpr (Bcc) out.grids[1] = cornerAt(volume, oddOf(at), lanes);
+        out.grids[0] = cornerAt(volume, at, lanes, many);
+        if constexpr (Bcc) out.grids[1] = cornerAt(volume, oddOf(at), lanes, many);
         return out;
     }
     [[gnu::always_inline]] Found valueOf(const Around& at, Mask lanes) const {
