@@ -83,23 +83,27 @@ inline const bool kGathersFast = [] {
     __builtin_cpu_init();
     return __builtin_cpu_is("intel") != 0;
 }();
-struct Spread {
-    I index;
-    bool gathered;
-    alignas(64) std::int32_t at[kLanes]; ///< the same in memory, for loads of single lanes, if not `gathered`
+template <bool Many> struct Spread {
+    alignas(64) std::int32_t at[kLanes]; ///< in memory, for loads of single lanes
 };
-[[gnu::always_inline]] inline Spread spread(I index, M m, bool many) {
-    Spread out;
-    out.index = index;
-    out.gathered = many && kGathersFast;
-    if (out.gathered) return out;
-    _mm512_store_si512(out.at, _mm512_maskz_mov_epi32(m, __m512i(index)));
-    asm volatile("" : "+m"(out.at)); // else the compiler takes the lanes out of the register, by two operations each
+template <> struct Spread<true> {
+    I index;
+    Spread<false> lanes; ///< unless gathers are fast
+};
+template <bool Many> [[gnu::always_inline]] inline Spread<Many> spread(I index, M m) {
+    Spread<Many> out;
+    if constexpr (Many) {
+        out.index = index;
+        if (!kGathersFast) out.lanes = spread<false>(index, m);
+    } else {
+        _mm512_store_si512(out.at, _mm512_maskz_mov_epi32(m, __m512i(index)));
+        asm volatile(""
+                     : "+m"(out.at)); // else the compiler takes the lanes out of the register, by two operations each
+    }
     return out;
 }
 template <int Scale>
-[[gnu::always_inline]] inline void loadPairs(const void* base, const Spread& index, M m, I& low, I& high) {
-    if (index.gathered) return gatherPairs<Scale>(base, index.index, m, low, high);
+[[gnu::always_inline]] inline void loadPairs(const void* base, const Spread<false>& index, M, I& low, I& high) {
     const std::int32_t* at = index.at;
     const auto place = [&](int i) __attribute__((always_inline)) {
         return static_cast<const char*>(base) + std::ptrdiff_t(at[i]) * Scale;
@@ -118,7 +122,15 @@ template <int Scale>
     low = I(_mm512_shuffle_ps(a, b, 0x88));
     high = I(_mm512_shuffle_ps(a, b, 0xdd));
 }
-template <int Scale> [[gnu::always_inline]] inline void loadQuads(const void* base, const Spread& index, M, I* each) {
+template <int Scale>
+[[gnu::always_inline]] inline void loadPairs(const void* base, const Spread<true>& index, M m, I& low, I& high) {
+    if (kGathersFast)
+        gatherPairs<Scale>(base, index.index, m, low, high);
+    else
+        loadPairs<Scale>(base, index.lanes, m, low, high);
+}
+template <int Scale>
+[[gnu::always_inline]] inline void loadQuads(const void* base, const Spread<false>& index, M, I* each) {
     const auto four = [&](int i) __attribute__((always_inline)) { // of lanes i, i + 4, i + 8, i + 12
         const auto one = [&](int lane) __attribute__((always_inline)) {
             const char* place = static_cast<const char*>(base) + std::ptrdiff_t(index.at[lane]) * Scale;
