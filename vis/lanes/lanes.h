@@ -167,14 +167,17 @@ template <int Scale> [[gnu::always_inline]] inline IntPair gatherPairs(const voi
     raw::gatherPairs<Scale>(base, index.v, m.v, out.low.v, out.high.v);
     return out;
 }
-/// Indices of loadPairs(), which are best made long before it; they may be anything in lanes that are not asked for.
-using Spread = raw::Spread;
-[[gnu::always_inline]] inline Spread spread(Ints index, Mask m) {
-    return raw::spread(index.v, m.v);
+/// Indices of loadPairs() and loadQuads(), which are best made long before them; they may be anything in lanes that are
+/// not asked for. `Many`: of several reads that do not wait for each other, so that it matters less how long one takes;
+/// only of loadPairs().
+template <bool Many> using Spread = raw::Spread<Many>;
+template <bool Many = false> [[gnu::always_inline]] inline Spread<Many> spread(Ints index, Mask m) {
+    return raw::spread<Many>(index.v, m.v);
 }
 /// As gatherPairs(), for large data: faster where the first cache misses often, slower where it does not. Lanes that
 /// are not asked for may be anything.
-template <int Scale> [[gnu::always_inline]] inline IntPair loadPairs(const void* base, const Spread& index, Mask m) {
+template <int Scale, class Spread>
+[[gnu::always_inline]] inline IntPair loadPairs(const void* base, const Spread& index, Mask m) {
     IntPair out;
     raw::loadPairs<Scale>(base, index, m.v, out.low.v, out.high.v);
     return out;
@@ -183,7 +186,8 @@ template <int Scale> [[gnu::always_inline]] inline IntPair loadPairs(const void*
 struct IntQuad {
     Ints each[4];
 };
-template <int Scale> [[gnu::always_inline]] inline IntQuad loadQuads(const void* base, const Spread& index, Mask m) {
+template <int Scale>
+[[gnu::always_inline]] inline IntQuad loadQuads(const void* base, const Spread<false>& index, Mask m) {
     raw::I each[4];
     raw::loadQuads<Scale>(base, index, m.v, each);
     return {{Ints(each[0]), Ints(each[1]), Ints(each[2]), Ints(each[3])}};

@@ -82,15 +82,14 @@ template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* 
     low = inOrder(_mm256_shuffle_ps(a, b, 0x88));
     high = inOrder(_mm256_shuffle_ps(a, b, 0xdd));
 }
-using Spread = I;
-[[gnu::always_inline]] inline Spread spread(I index, M) {
+template <bool> using Spread = I;
+template <bool> [[gnu::always_inline]] inline I spread(I index, M) {
     return index;
 }
-template <int Scale>
-[[gnu::always_inline]] inline void loadPairs(const void* base, Spread index, M m, I& low, I& high) {
+template <int Scale> [[gnu::always_inline]] inline void loadPairs(const void* base, I index, M m, I& low, I& high) {
     gatherPairs<Scale>(base, index, m, low, high);
 }
-template <int Scale> [[gnu::always_inline]] inline void loadQuads(const void* base, const Spread& index, M m, I* each) {
+template <int Scale> [[gnu::always_inline]] inline void loadQuads(const void* base, const I& index, M m, I* each) {
     alignas(32) std::int32_t at[kLanes];
     _mm256_store_si256(reinterpret_cast<__m256i*>(at), __m256i(index & m));
     const auto two = [&](int i) __attribute__((always_inline)) { // of lanes i and i + 4

@@ -77,29 +77,33 @@ template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* 
     low = I(_mm512_permutex2var_epi32(a, even, b));
     high = I(_mm512_permutex2var_epi32(a, _mm512_or_si512(even, _mm512_set1_epi32(1)), b));
 }
-/// Whether gather instructions are the fastest way: on Intel's processors they take 0.8 of the time of loads of single
-/// lanes, on Zen 4 1.6 times as long where the first cache misses.
+/// Whether gather instructions are the fastest way for many reads: on Intel's processors they take 0.8 of the time of
+/// loads of single lanes, but longer until the first is done; on Zen 4 1.6 times as long where the first cache misses.
 inline const bool kGathersFast = [] {
     __builtin_cpu_init();
     return __builtin_cpu_is("intel") != 0;
 }();
-struct Spread {
-    I index;
-    alignas(64) std::int32_t at[kLanes]; ///< the same in memory, for loads of single lanes
+template <bool Many> struct Spread {
+    alignas(64) std::int32_t at[kLanes]; ///< in memory, for loads of single lanes
 };
-[[gnu::always_inline]] inline void storeLanes(Spread& out, M m) {
-    _mm512_store_si512(out.at, _mm512_maskz_mov_epi32(m, __m512i(out.index)));
-    asm volatile("" : "+m"(out.at)); // else the compiler takes the lanes out of the register, by two operations each
-}
-[[gnu::always_inline]] inline Spread spread(I index, M m) {
-    Spread out;
-    out.index = index;
-    if (!kGathersFast) storeLanes(out, m);
+template <> struct Spread<true> {
+    I index;
+    Spread<false> lanes; ///< unless gathers are fast
+};
+template <bool Many> [[gnu::always_inline]] inline Spread<Many> spread(I index, M m) {
+    Spread<Many> out;
+    if constexpr (Many) {
+        out.index = index;
+        if (!kGathersFast) out.lanes = spread<false>(index, m);
+    } else {
+        _mm512_store_si512(out.at, _mm512_maskz_mov_epi32(m, __m512i(index)));
+        asm volatile(""
+                     : "+m"(out.at)); // else the compiler takes the lanes out of the register, by two operations each
+    }
     return out;
 }
 template <int Scale>
-[[gnu::always_inline]] inline void loadPairs(const void* base, const Spread& index, M m, I& low, I& high) {
-    if (kGathersFast) return gatherPairs<Scale>(base, index.index, m, low, high);
+[[gnu::always_inline]] inline void loadPairs(const void* base, const Spread<false>& index, M, I& low, I& high) {
     const std::int32_t* at = index.at;
     const auto place = [&](int i) __attribute__((always_inline)) {
         return static_cast<const char*>(base) + std::ptrdiff_t(at[i]) * Scale;
@@ -119,9 +123,14 @@ template <int Scale>
     high = I(_mm512_shuffle_ps(a, b, 0xdd));
 }
 template <int Scale>
-[[gnu::always_inline]] inline void loadQuads(const void* base, const Spread& spread, M m, I* each) {
-    Spread index = spread;
-    if (kGathersFast) storeLanes(index, m);
+[[gnu::always_inline]] inline void loadPairs(const void* base, const Spread<true>& index, M m, I& low, I& high) {
+    if (kGathersFast)
+        gatherPairs<Scale>(base, index.index, m, low, high);
+    else
+        loadPairs<Scale>(base, index.lanes, m, low, high);
+}
+template <int Scale>
+[[gnu::always_inline]] inline void loadQuads(const void* base, const Spread<false>& index, M, I* each) {
     const auto four = [&](int i) __attribute__((always_inline)) { // of lanes i, i + 4, i + 8, i + 12
         const auto one = [&](int lane) __attribute__((always_inline)) {
             const char* place = static_cast<const char*>(base) + std::ptrdiff_t(index.at[lane]) * Scale;

@@ -89,15 +89,14 @@ template <int Scale> [[gnu::always_inline]] inline void gatherPairs(const void* 
         high[i] = values[1];
     }
 }
-using Spread = I;
-[[gnu::always_inline]] inline Spread spread(I index, M) {
+template <bool> using Spread = I;
+template <bool> [[gnu::always_inline]] inline I spread(I index, M) {
     return index;
 }
-template <int Scale>
-[[gnu::always_inline]] inline void loadPairs(const void* base, Spread index, M m, I& low, I& high) {
+template <int Scale> [[gnu::always_inline]] inline void loadPairs(const void* base, I index, M m, I& low, I& high) {
     gatherPairs<Scale>(base, index, m, low, high);
 }
-template <int Scale> [[gnu::always_inline]] inline void loadQuads(const void* base, Spread index, M m, I* each) {
+template <int Scale> [[gnu::always_inline]] inline void loadQuads(const void* base, I index, M m, I* each) {
     for (int i = 0; i < kLanes; ++i) {
         std::int32_t values[4] = {0, 0, 0, 0};
         if (m[i]) __builtin_memcpy(values, static_cast<const char*>(base) + std::ptrdiff_t(index[i]) * Scale, 16);

@@ -52,7 +52,7 @@ template <bool Bcc>
                                                Mask lanes, Vec& sum) {
     const Taps x = tapsAt<Bcc>(cells.x, reach), y = tapsAt<Bcc>(cells.y, reach), z = tapsAt<Bcc>(cells.z, reach);
     const PairTaps mean = pairTaps(y.mean, kQuantum), difference = pairTaps(y.difference, 0);
-    const Spread place = spread(pairAt(volume, {x.first << 16, y.first << 16, z.first << 16}), lanes);
+    const Spread<false> place = spread(pairAt(volume, {x.first << 16, y.first << 16, z.first << 16}), lanes);
     for (int slice = 0; slice < 3; ++slice) {
         const std::int16_t* const from = volume.shorts + 2 * (offset + slice * kSlice);
         const IntQuad low = loadQuads<4>(from, place, lanes), high = loadQuads<4>(from + 2 * kRow, place, lanes);

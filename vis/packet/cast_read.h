@@ -44,8 +44,8 @@ inline Fixed oddOf(const Fixed& at) {
 
 /// Where the samples around a position of one sublattice lie (pairs), and the fractions times 2^15, those of x and z
 /// in both halves of a lane, of y with one minus it.
-struct Corner {
-    Spread place;
+template <bool Many> struct Corner {
+    Spread<Many> place;
     Ints x, y, z;
 };
 /// Weights of two neighbours in 15 bits, in one lane.
@@ -61,12 +61,15 @@ inline Ints pairWeights(Floats f) {
            (at.y >> 20) * Ints(volume.perBrick.y) + (at.z >> 20) * Ints(volume.perBrick.z);
 }
 
-[[gnu::always_inline]] inline Corner cornerAt(const VolumeView& volume, const Fixed& at, Mask lanes) {
-    return {spread(pairAt(volume, at), lanes), lowHalves(at.x), lowHalves(at.y) ^ Ints(kQuantum), lowHalves(at.z)};
+template <bool Many = false>
+[[gnu::always_inline]] inline Corner<Many> cornerAt(const VolumeView& volume, const Fixed& at, Mask lanes) {
+    return {spread<Many>(pairAt(volume, at), lanes), lowHalves(at.x), lowHalves(at.y) ^ Ints(kQuantum),
+            lowHalves(at.z)};
 }
 
 /// The interpolated 15-bit samples, times kQuantum.
-[[gnu::always_inline]] inline Floats trilinear(const std::int16_t* samples, const Corner& corner, Mask lanes) {
+template <bool Many>
+[[gnu::always_inline]] inline Floats trilinear(const std::int16_t* samples, const Corner<Many>& corner, Mask lanes) {
     const auto slice = [&](int more) __attribute__((always_inline)) {
         const IntPair pairs = loadPairs<4>(samples + 2 * more, corner.place, lanes);
         return mixPairs(pairs.low, pairs.high, corner.x);
@@ -74,7 +77,8 @@ inline Ints pairWeights(Floats f) {
     return toFloats(dotPairs(mixPairs(slice(0), slice(kSlice), corner.z), corner.y));
 }
 
-[[gnu::always_inline]] inline Floats trilinear(const float* samples, const Corner& corner, Mask lanes) {
+template <bool Many>
+[[gnu::always_inline]] inline Floats trilinear(const float* samples, const Corner<Many>& corner, Mask lanes) {
     const auto share = [](Ints fraction) { return toFloats(fraction >> 16) * Floats(1.0 / (1 << 15)); };
     const Floats x = share(corner.x), y = share(corner.y), z = share(corner.z);
     const auto column = [&](int more) __attribute__((always_inline)) {
@@ -125,9 +129,10 @@ template <bool Bcc, bool Exact> struct Reader {
             for (int i = 0; i < Count; ++i, at += way) found[i] = cubic(at, lanes[i]);
             return;
         }
-        Around places[Count];
+        constexpr bool kMany = Count > 2;
+        Around<kMany> places[Count];
         for (int i = 0; i < Count; ++i) {
-            places[i] = around(at, lanes[i]);
+            places[i] = around<kMany>(at, lanes[i]);
             at += way;
         }
         for (int i = 0; i < Count; ++i) found[i] = valueOf(places[i], lanes[i]);
@@ -138,8 +143,9 @@ template <bool Bcc, bool Exact> struct Reader {
             for (int i = 0; i < Count; ++i) found[i] = cubic(at[i], lanes[i]);
             return;
         }
-        Around places[Count];
-        for (int i = 0; i < Count; ++i) places[i] = around(at[i], lanes[i]);
+        constexpr bool kMany = Count > 2;
+        Around<kMany> places[Count];
+        for (int i = 0; i < Count; ++i) places[i] = around<kMany>(at[i], lanes[i]);
         for (int i = 0; i < Count; ++i) found[i] = valueOf(places[i], lanes[i]);
     }
     /// The value as far as samples have any weight, see reference::Samples::continued; present where they have.
@@ -180,7 +186,7 @@ private:
     template <class Of>
     void addCorners(const Fixed& at, int offset, Mask lanes, const Of& of, glm::vec<4, Floats>& sum,
                     Floats& coverage) const {
-        const Spread place = spread(pairAt(volume, at), lanes);
+        const Spread<false> place = spread(pairAt(volume, at), lanes);
         const auto share = [](Ints along) { return toFloats(along & Ints(0xffff)) * Floats(1.0 / (1 << 16)); };
         const Floats x = share(at.x), y = share(at.y), z = share(at.z);
         const auto halves = [&](const std::int16_t* samples, int slice, Floats* out) { // of x, then of y
@@ -265,16 +271,14 @@ private:
     }
 
     /// A position in each sublattice.
-    struct Around {
-        Corner grids[Bcc ? 2 : 1];
-    };
-    [[gnu::always_inline]] Around around(const Fixed& at, Mask lanes) const {
-        Around out;
-        out.grids[0] = cornerAt(volume, at, lanes);
-        if constexpr (Bcc) out.grids[1] = cornerAt(volume, oddOf(at), lanes);
+    template <bool Many> struct Around { Corner<Many> grids[Bcc ? 2 : 1]; };
+    template <bool Many = false> [[gnu::always_inline]] Around<Many> around(const Fixed& at, Mask lanes) const {
+        Around<Many> out;
+        out.grids[0] = cornerAt<Many>(volume, at, lanes);
+        if constexpr (Bcc) out.grids[1] = cornerAt<Many>(volume, oddOf(at), lanes);
         return out;
     }
-    [[gnu::always_inline]] Found valueOf(const Around& at, Mask lanes) const {
+    template <bool Many> [[gnu::always_inline]] Found valueOf(const Around<Many>& at, Mask lanes) const {
         Floats sum(0), coverage(0);
         add(at, lanes, sum, coverage);
         return valueOf(sum, coverage, lanes);
@@ -317,11 +321,14 @@ private:
         else
             add(around(at, lanes), lanes, sum, coverage);
     }
-    [[gnu::always_inline]] void add(const Around& at, Mask lanes, Floats& sum, Floats& coverage) const {
+    template <bool Many>
+    [[gnu::always_inline]] void add(const Around<Many>& at, Mask lanes, Floats& sum, Floats& coverage) const {
         add(at.grids[0], 0, lanes, sum, coverage);
         if constexpr (Bcc) add(at.grids[1], volume.oddOffset, lanes, sum, coverage);
     }
-    [[gnu::always_inline]] void add(const Corner& corner, int offset, Mask lanes, Floats& sum, Floats& coverage) const {
+    template <bool Many>
+    [[gnu::always_inline]] void add(const Corner<Many>& corner, int offset, Mask lanes, Floats& sum,
+                                    Floats& coverage) const {
         if constexpr (Exact)
             sum += trilinear(volume.floats + 2 * offset, corner, lanes);
         else
